@@ -5,11 +5,12 @@ import pytest
 from scipy import ndimage
 
 from world2minecraft.capture.stereo.consistency import check_consistency, filter_speckles
-from world2minecraft.capture.stereo.plane_sweep import aggregate_costs, select_planes, sweep_costs
-
-
-def halves(rng, *shape):
-    return (np.round(rng.uniform(-128, 127, shape) * 2) / 2).astype(np.float32)
+from world2minecraft.capture.stereo.plane_sweep import (
+    aggregate_costs,
+    pack_corners,
+    select_planes,
+    sweep_costs,
+)
 
 
 def read(picture, x, y):
@@ -24,14 +25,15 @@ def read(picture, x, y):
     return np.floor((top * (1 - b) + low * b) * 2 + 0.5) / 2
 
 
-def slow_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, noise):
+def slow_costs(grey, sources, turns, shifts, inverse, best_of, radius, noise):
+    grey = grey - 128.0
     high, wide = grey.shape
     costs = np.empty((high, wide, len(inverse)))
     padded = np.pad(grey, radius, mode="edge")
     for d, one_by_z in enumerate(inverse):
         scores = np.full((len(sources), high, wide), -2.0)
         for n, source in enumerate(sources):
-            own = source[: sizes[n, 0], : sizes[n, 1]]
+            own = source - 128.0
             warped, seen = np.empty((high, wide)), np.empty((high, wide), bool)
             for v in range(high):
                 for u in range(wide):
@@ -59,17 +61,30 @@ def slow_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, no
 @pytest.mark.parametrize("radius", [1, 3])
 def test_costs_are_window_correlations_over_planes(radius):
     rng = np.random.default_rng(0)
-    grey, sources = halves(rng, 9, 13), halves(rng, 3, 11, 14)
-    sizes = np.array([[9, 13], [11, 14], [9, 13]])
+    grey = rng.integers(0, 256, (9, 13), np.uint8)
+    sources = [rng.integers(0, 256, size, np.uint8) for size in [(9, 13), (11, 14), (9, 13)]]
     turns = (np.eye(3) + rng.normal(0, 0.01, (3, 3, 3))).astype(np.float32)
     turns[:, 2] = [0, 0, 1]
     shifts = (rng.normal(0, 3, (3, 3)) * [1, 1, 0.05]).astype(np.float32)
     inverse = np.array([0.2, 0.7, 1.0], np.float32)
-    given = (grey, sources, sizes, turns, shifts, inverse, 2, radius, 4.0)
-    fast, slow = sweep_costs(*given).astype(float), slow_costs(*given)
+    rest = (turns, shifts, inverse, 2, radius, 4.0)
+    fast = sweep_costs(grey, *pack_corners(sources), *rest).astype(float)
+    slow = slow_costs(grey, sources, *rest)
     # A place that float32 rounds to the other side of a half moves a window's sum by a little.
     assert np.abs(fast - slow).max() < 2.5
     assert (np.abs(fast - slow) <= 0.51).mean() > 0.98
+
+
+def test_corners_are_a_pixel_and_its_next_ones():
+    rng = np.random.default_rng(0)
+    greys = [rng.integers(0, 256, size, np.uint8) for size in [(3, 5), (4, 2)]]
+    packed, sizes = pack_corners(greys)
+    np.testing.assert_array_equal(sizes, [[3, 5], [4, 2]])
+    for number, grey in enumerate(greys):
+        for y in range(grey.shape[0] - 1):
+            for x in range(grey.shape[1] - 1):
+                four = grey[y : y + 2, x : x + 2].reshape(-1)
+                assert int(packed[number, y, x]).to_bytes(4, "little") == four.tobytes()
 
 
 def slow_paths(costs, small, large):

@@ -39,8 +39,8 @@ class StereoPhoto:
 
     @property
     def grey(self) -> np.ndarray:
-        """The brightest channel as float32 from -128 to 127, which separates red from black."""
-        return self.colour.max(axis=2).astype(np.float32) - np.float32(128)
+        """The brightest channel, uint8 [h, w], which separates red from black."""
+        return self.colour.max(axis=2)
 
 
 def prepare_stereo_photos(

@@ -12,7 +12,7 @@ import numpy as np
 from world2minecraft.capture.stereo.parameters import StereoParameters
 from world2minecraft.capture.stereo.photo_preparation import StereoPhoto
 from world2minecraft.core.coordinates import invert_rigid
-from world2minecraft.core.jit import njit
+from world2minecraft.core.jit import lean, njit
 
 NEAR_SHARE, FAR_SHARE = 0.8, 1.25  # Room around the nearest and farthest sparse points.
 
@@ -22,8 +22,8 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
     """Return the matching cost of each pixel at each plane, from 0 (equal) to 254 (opposite).
 
     Args:
-        grey: Grey image of the photo, float32 [h, w], multiples of 0.5 from -128 to 127.5.
-        sources: Grey images of the neighbours, float32 [N, H, W].
+        grey: Grey levels of the photo, uint8 [h, w].
+        sources: Grey levels of the neighbours, uint32 [N, H, W]; see ``pack_corners``.
         sizes: Height and width of each neighbour in its array, int64 [N, 2].
         turns: Matrices ``K_n R K^-1``, float32 [N, 3, 3].
         shifts: Vectors ``K_n t``, float32 [N, 3].
@@ -36,60 +36,72 @@ def sweep_costs(grey, sources, sizes, turns, shifts, inverse, best_of, radius, n
         The costs as uint8 [h, w, D]; 127 (neutral) if fewer than two neighbours show the pixel.
     """
     height, width = grey.shape
-    count = len(sources)
+    count, stride = len(sources), sources.shape[2]
+    pixels = sources.reshape(count, sources.shape[1] * stride)
     side = 2 * radius + 1
-    costs = np.empty((height, width, len(inverse)), np.uint8)
-    mean, spread = _window_statistics(grey, radius, noise)
+    planes = np.empty((len(inverse), height, width), np.uint8)
+    padded = _padded(grey, radius)
+    mean, spread = _window_statistics(padded, radius, noise)
     ring = np.zeros((count, side, width + 2 * radius), np.float32)
     seen = np.zeros((count, side, width), np.float32)
-    padded = _padded(grey, radius)
     sums = np.zeros((count, 3, width + 2 * radius), np.float32)
     scores = np.empty((count, width), np.float32)
     best = np.empty((best_of, width), np.float32)
     box = np.empty((3, width), np.float32)
-    at_x, at_y = np.empty(width, np.float32), np.empty(width, np.float32)
+    corner, at = np.empty(width, np.uint32), np.empty((2, width), np.float32)
     for d in range(len(inverse)):
         sums[:] = 0
         for row in range(-radius, height + radius):
-            at = (row + radius) % side
+            slot = (row + radius) % side
             inside = min(max(row, 0), height - 1)
             y = row - radius
             for n in range(count):
                 if row >= radius + 1:
-                    _add_row(sums[n], ring[n, at], padded[row + radius - side], -1.0)
+                    _add_row(sums[n], ring[n, slot], padded[row + radius - side], -1.0)
                 _warp_row(
-                    sources[n], sizes[n], turns[n], shifts[n], inverse[d], inside, radius,
-                    at_x, at_y, ring[n, at], seen[n, at],
+                    pixels[n], stride, sizes[n], turns[n], shifts[n], inverse[d], inside, radius,
+                    corner, at, ring[n, slot], seen[n, slot],
                 )  # fmt: skip
-                _add_row(sums[n], ring[n, at], padded[row + radius], 1.0)
+                _add_row(sums[n], ring[n, slot], padded[row + radius], 1.0)
                 if y >= 0:
                     _score_row(
                         sums[n], mean[y], spread[y], seen[n, (y + radius) % side], side, noise,
                         box, scores[n],
                     )  # fmt: skip
             if y >= 0:
-                _mean_best_scores(scores, best, costs[y], d)
-    return costs
+                _mean_best_scores(scores, best, box[0], box[1], planes[d, y])
+    return _planes_last(planes)
+
+
+@njit
+def _planes_last(planes):
+    """Return costs [D, h, w] as [h, w, D]."""
+    count, height, width = planes.shape
+    result = np.empty((height, width, count), np.uint8)
+    for y in range(height):
+        for x in range(width):
+            for d in range(count):
+                result[y, x, d] = planes[d, y, x]
+    return result
 
 
 @njit
 def _padded(grey, radius):
-    """Return the image with its edge repeated ``radius`` pixels outwards."""
+    """Return grey levels minus 128 as float32, with the edge repeated ``radius`` times."""
     height, width = grey.shape
     result = np.empty((height + 2 * radius, width + 2 * radius), np.float32)
     for y in range(height + 2 * radius):
         for x in range(width + 2 * radius):
             v, u = min(max(y - radius, 0), height - 1), min(max(x - radius, 0), width - 1)
-            result[y, x] = grey[v, u]
+            result[y, x] = np.float32(grey[v, u]) - np.float32(128)
     return result
 
 
 @njit
-def _window_statistics(grey, radius, noise):
-    """Return the sum of each window and the inverse root of its variance."""
-    height, width = grey.shape
-    padded = _padded(grey, radius)
+def _window_statistics(padded, radius, noise):
+    """Return the mean of each window and the inverse root of its variance times its area."""
     side = 2 * radius + 1
+    height, width = padded.shape[0] - 2 * radius, padded.shape[1] - 2 * radius
     area = np.float32(side * side)
     mean, spread = np.empty((height, width), np.float32), np.empty((height, width), np.float32)
     for y in range(height):
@@ -106,9 +118,15 @@ def _window_statistics(grey, radius, noise):
     return mean, spread
 
 
-@njit
-def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values, seen):
-    """Sample a row of the photo from a neighbour through a plane, and repeat its ends."""
+@lean
+def _warp_row(
+    pixels, stride, size, turn, shift, inverse, v, radius, corner, at, values, seen
+):  # fmt: skip
+    """Sample a row of the photo from a neighbour through a plane, and repeat its ends.
+
+    Values are grey levels minus 128, rounded to halves. The loops are separate because only the
+    one that reads ``pixels`` at random places cannot be vectorised.
+    """
     height, width = size
     y0, half = np.float32(v) + np.float32(0.5), np.float32(0.5)
     ax = turn[0, 1] * y0 + turn[0, 2] + shift[0] * inverse
@@ -125,21 +143,27 @@ def _warp_row(source, size, turn, shift, inverse, v, radius, at_x, at_y, values,
         y = (ay + turn[1, 0] * x0) * by - half
         inside = (z > none) & (x >= none) & (y >= none) & (x <= last_x) & (y <= last_y)
         seen[u] = one if inside else none
-        at_x[u], at_y[u] = min(max(x, none), last_x), min(max(y, none), last_y)
+        x, y = min(max(x, none), last_x), min(max(y, none), last_y)
+        i, j = np.int32(x), np.int32(y)
+        corner[u] = np.uint32(j * stride + i)
+        at[0, u], at[1, u] = x - np.float32(i), y - np.float32(j)
     for u in range(row_width):
-        x, y = at_x[u], at_y[u]
-        i, j = np.uint32(x), np.uint32(y)
-        a, b = x - np.float32(i), y - np.float32(j)
-        top = source[j, i] + a * (source[j, i + 1] - source[j, i])
-        low = source[j + 1, i] + a * (source[j + 1, i + 1] - source[j + 1, i])
+        corner[u] = pixels[corner[u]]
+    middle = values[radius : radius + row_width]
+    for u in range(row_width):
+        four, a, b = corner[u], at[0, u], at[1, u]
+        top_left = np.float32(np.int32(four & 255) - 128)
+        low_left = np.float32(np.int32((four >> 16) & 255) - 128)
+        top = top_left + a * (np.float32(np.int32((four >> 8) & 255) - 128) - top_left)
+        low = low_left + a * (np.float32(np.int32((four >> 24) & 255) - 128) - low_left)
         value = top + b * (low - top)
-        values[u + radius] = np.floor(value * np.float32(2) + half) * half
+        middle[u] = np.floor(value * np.float32(2) + half) * half
     for k in range(radius):
         values[k] = values[radius]
         values[row_width + radius + k] = values[row_width + radius - 1]
 
 
-@njit
+@lean
 def _add_row(sums, values, own, sign):
     """Add a row to the column sums, or subtract it."""
     for x in range(len(values)):
@@ -150,48 +174,59 @@ def _add_row(sums, values, own, sign):
         sums[2, x] += signed * own[x]
 
 
-@njit
+@lean
 def _score_row(sums, mean, spread, seen, side, noise, box, scores):
-    """Compute the correlation of each window of a row; -2 outside the neighbour."""
+    """Compute the correlation of each window of a row; -2 outside the neighbour.
+
+    Loops over slices are vectorised; with ``row[x + k]``, numba checks each index for its sign.
+    """
     area = np.float32(side * side)
     extra = area * np.float32(noise)
     width = len(scores)
+    radius = side // 2
     for c in range(3):
+        row, total = sums[c], box[c]
+        middle = row[radius : radius + width]
         for x in range(width):
-            box[c, x] = sums[c, x]
-        for k in range(1, side):
+            total[x] = middle[x]
+        for k in range(1, radius + 1):
+            left, right = row[radius - k : radius - k + width], row[radius + k : radius + k + width]
             for x in range(width):
-                box[c, x] += sums[c, x + k]
+                total[x] += left[x] + right[x]
     for x in range(width):
-        total = box[0, x]
-        variance = box[1, x] - total * total / area + extra
-        score = (box[2, x] - mean[x] * total) * spread[x]
+        value = box[0, x]
+        variance = box[1, x] - value * value / area + extra
+        score = (box[2, x] - mean[x] * value) * spread[x]
         score /= np.sqrt(max(variance, np.float32(1e-6)))
         scores[x] = score if seen[x] > 0 else np.float32(-2)
 
 
-@njit
-def _mean_best_scores(scores, best, costs, d):
-    """Write the mean of the best scores of each pixel of a row as a cost."""
-    count, width = scores.shape
-    best_count = len(best)
+@lean
+def _mean_best_scores(scores, best, total, found, costs):
+    """Write the mean of the best scores of each pixel of a row as a cost.
+
+    ``scores`` [N, w] is overwritten; ``best`` [B, w], ``total`` and ``found`` [w] are work space.
+    """
+    # Adding 0 makes both stores unconditional: masked stores take four times as long.
+    zero, one = np.float32(0), np.float32(1)
     best[:] = -2
-    for n in range(count):
-        for x in range(width):
-            value = scores[n, x]
-            for k in range(best_count):
-                current = best[k, x]
-                best[k, x] = max(current, value)
-                value = min(current, value)
-    for x in range(width):
-        total, found = np.float32(0), np.float32(0)
-        for k in range(best_count):
-            if best[k, x] > np.float32(-1.5):
-                total += best[k, x]
-                found += np.float32(1)
-        mean = total / max(found, np.float32(1)) if found > np.float32(1.5) else np.float32(0)
-        cost = np.float32(127) * (np.float32(1) - mean)
-        costs[x, d] = np.uint8(min(max(cost + np.float32(0.5), np.float32(0)), np.float32(254)))
+    for n in range(len(scores)):
+        for k in range(len(best)):
+            for x in range(len(costs)):
+                value, current = scores[n, x], best[k, x]
+                best[k, x] = max(current, value) + zero
+                scores[n, x] = min(current, value) + zero
+    total[:] = 0
+    found[:] = 0
+    for k in range(len(best)):
+        for x in range(len(costs)):
+            valid = one if best[k, x] > np.float32(-1.5) else zero
+            total[x] += valid * best[k, x]
+            found[x] += valid
+    for x in range(len(costs)):
+        mean = total[x] / max(found[x], one) if found[x] > np.float32(1.5) else zero
+        cost = np.float32(127) * (one - mean) + np.float32(0.5)
+        costs[x] = np.uint8(np.int32(min(max(cost, zero), np.float32(254))))
 
 
 @njit
@@ -309,7 +344,7 @@ def sweep_depth(
     inverse = np.linspace(1 / far_m, 1 / near_m, values.planes)
     turns, shifts = _homographies(photo, others)
     costs = sweep_costs(
-        photo.grey, *_stack_images([other.grey for other in others]), turns, shifts,
+        photo.grey, *pack_corners([other.grey for other in others]), turns, shifts,
         inverse.astype(np.float32), min(values.best_of, len(others)), values.window_px // 2,
         values.noise**2,
     )  # fmt: skip
@@ -320,13 +355,23 @@ def sweep_depth(
     return (1 / (inverse[0] + plane * step)).astype(np.float32)
 
 
-def _stack_images(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return images of any sizes in one padded array, and their sizes."""
+def pack_corners(greys: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return images of any sizes in one padded array, with all that a sample needs in one place.
+
+    Args:
+        greys: Grey levels, uint8 [H_n, W_n] each.
+
+    Returns:
+        An array uint32 [N, H, W] with four grey levels each: of the pixel in the lowest byte, then
+        of its right, lower and lower right neighbours; and the sizes as int64 [N, 2].
+    """
     sizes = np.array([grey.shape for grey in greys], np.int64)
-    stack = np.zeros((len(greys), *sizes.max(axis=0)), np.float32)
+    stack = np.zeros((len(greys), *(sizes.max(axis=0) + 1)), np.uint32)
     for number, grey in enumerate(greys):
         stack[number, : grey.shape[0], : grey.shape[1]] = grey
-    return stack, sizes
+    right = stack[:, :-1, :-1] | stack[:, :-1, 1:] << 8
+    below = stack[:, 1:, :-1] | stack[:, 1:, 1:] << 8
+    return right | below << 16, sizes
 
 
 def _add_sparse_point_costs(costs, photo, inverse, guide_cost):
