@@ -1,6 +1,14 @@
-"""SIFT features of photos, with colours and the sharpness of each photo."""
+"""SIFT features of photos, with colours and the sharpness of each photo.
+
+pycolmap extracts features on several threads only from image files to a database, so both are
+written to a temporary folder, a few photos at a time. The features do not depend on the threads.
+"""
 
 from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from shutil import rmtree
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -10,11 +18,14 @@ from world2minecraft.capture.sfm.parameters import SfmParameters
 from world2minecraft.capture.sfm.progress import ProgressSteps
 from world2minecraft.capture.sfm.pycolmap_access import PHOTOS, pycolmap_session
 from world2minecraft.core.errors import CaptureError, LimitError
+from world2minecraft.core.machine import usable_cores
+from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import Photo, PhotoStream, RigMember
 
 MAX_PHOTOS = 3000  # Their features take about 1 GB.
 PEAK_THRESHOLD = 0.0067  # COLMAP's own threshold, for images of 0 to 1.
+MAX_THREADS = 8  # Each needs about 50 MB.
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +87,15 @@ def extract_features(
             "example with --set capture.every=10",
         )
     gathered: list[Features] = []
-    with pycolmap_session() as pycolmap:
-        extractor = _extractor(pycolmap, parameters)
-        for photo in photos:
-            gathered.append(_extract_photo(photo, extractor, pycolmap, parameters))
-            steps.done("features")
+    threads = min(usable_cores(), MAX_THREADS)
+    stream = read_ahead(photos, 2 * threads)
+    with pycolmap_session() as pycolmap, TemporaryDirectory(prefix="w2m-features-") as folder:
+        options = _options(pycolmap, parameters, threads)
+        while some := list(islice(stream, 2 * threads)):
+            place = Path(folder) / str(len(gathered))
+            gathered += _extract_batch(some, place, options, pycolmap, parameters)
+            for _ in some:
+                steps.done("features")
     names = [photo.name for photo in gathered]
     if len(set(names)) != len(names):
         twice = next(name for name in names if names.count(name) > 1)
@@ -90,27 +105,66 @@ def extract_features(
     return gathered
 
 
-def _extractor(pycolmap: Any, parameters: SfmParameters) -> Any:
+def _options(pycolmap: Any, parameters: SfmParameters, threads: int) -> Any:
     options = pycolmap.FeatureExtractionOptions()
-    options.num_threads = 1
+    options.num_threads = threads
     options.use_gpu = False
     options.sift.first_octave = 0  # The image is enlarged before.
     options.sift.peak_threshold = PEAK_THRESHOLD
     options.sift.max_num_features = 2 * parameters.most_features
-    return pycolmap.FeatureExtractor.create(options, pycolmap.Device.cpu)
+    return options
 
 
-def _extract_photo(
-    photo: Photo, extractor: Any, pycolmap: Any, parameters: SfmParameters
-) -> Features:
+def _extract_batch(
+    photos: list[Photo], folder: Path, options: Any, pycolmap: Any, parameters: SfmParameters
+) -> list[Features]:
+    """Return the features of a few photos; their files are written to a new folder."""
+    images = folder / "images"
+    images.mkdir(parents=True)
+    greys = [_resized_grey(photo, parameters.working_px) for photo in photos]
+    for number, grey in enumerate(greys):
+        grey.save(images / f"{number}.bmp")
+    database = folder / "features.db"
+    pycolmap.extract_features(
+        database, images, camera_mode=pycolmap.CameraMode.PER_IMAGE,
+        extraction_options=options, device=pycolmap.Device.cpu,
+    )  # fmt: skip
+    found = {}
+    with pycolmap.Database.open(database) as stored:
+        for image in stored.read_all_images():
+            keypoints = np.asarray(stored.read_keypoints(image.image_id)).reshape(-1, 6)
+            descriptors = stored.read_descriptors(image.image_id).data
+            found[image.name] = keypoints, np.asarray(descriptors, np.uint8).reshape(-1, 128)
+    rmtree(folder)
+    return [
+        _features(photo, grey, *found[f"{number}.bmp"], parameters.most_features)
+        for number, (photo, grey) in enumerate(zip(photos, greys, strict=True))
+    ]
+
+
+def _resized_grey(photo: Photo, working_px: int) -> Image.Image:
     height, width = photo.colour.shape[:2]
-    times = min(2.0, (parameters.working_px / (width * height)) ** 0.5)
+    times = min(2.0, (working_px / (width * height)) ** 0.5)
     size = max(1, round(width * times)), max(1, round(height * times))
-    grey = Image.fromarray(photo.colour).convert("L").resize(size, Image.Resampling.BICUBIC)
-    keypoints, descriptors = extractor.extract_from_uint8_array(np.asarray(grey))
-    found = np.asarray(pycolmap.keypoints_to_matrix(keypoints), np.float64).reshape(-1, 4)
-    order = np.argsort(-found[:, 2], kind="stable")[: parameters.most_features]
-    pixels = found[order, :2] * [width / size[0], height / size[1]]
+    return Image.fromarray(photo.colour).convert("L").resize(size, Image.Resampling.BICUBIC)
+
+
+def _features(
+    photo: Photo, grey: Image.Image, keypoints: np.ndarray, descriptors: np.ndarray, count: int
+) -> Features:
+    """Return the largest features of a photo.
+
+    Args:
+        photo: The photo.
+        grey: Its resized image.
+        keypoints: x, y and the 2x2 matrix of each feature in the resized image, float32 [K, 6].
+        descriptors: SIFT descriptors, uint8 [K, 128].
+        count: Maximum number of features.
+    """
+    height, width = photo.colour.shape[:2]
+    scale = np.sqrt(keypoints[:, 2] ** 2 + keypoints[:, 4] ** 2)  # The matrix is a similarity.
+    order = np.argsort(-scale, kind="stable")[:count]
+    pixels = keypoints[order, :2].astype(np.float64) * [width / grey.width, height / grey.height]
     at = np.clip(pixels.astype(np.intp), 0, [width - 1, height - 1])
     return Features(
         photo.name,
@@ -120,7 +174,7 @@ def _extract_photo(
         photo.camera_guessed,
         photo.camera_to_scan,
         pixels,
-        np.asarray(descriptors.data, np.uint8).reshape(-1, 128)[order],
+        descriptors[order],
         photo.colour[at[:, 1], at[:, 0]],
         sharpness(np.asarray(grey)),
         photo.rig,

@@ -12,6 +12,7 @@ from world2minecraft.capture.stereo.planar_regions import fill_planar_regions
 from world2minecraft.capture.stereo.plane_sweep import depth_range, sweep_depth
 from world2minecraft.core.coordinates import apply, invert_rigid
 from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.parallel import map_parallel
 from world2minecraft.core.progress import Progress, no_progress
 from world2minecraft.core.types import DepthMap, PhotoStream, SparseScene
 from world2minecraft.geometry.unprojection import pixel_rays, project
@@ -121,9 +122,13 @@ def compute_depth_maps(
     values = parameters or StereoParameters()
     small = prepare_stereo_photos(photos, scene, values.width_px, no_progress)
     swept, neighbours = sweep_photos(small, values, progress)
-    found = [filter_consistent(n, small, swept, neighbours, values) for n in range(len(small))]
     every_m = np.concatenate([photo.guide_m for photo in small])
-    guesses = [_fill_planes(one, p, every_m) for one, p in zip(found, small, strict=True)]
+
+    def filtered(number: int) -> tuple[DepthMap, tuple[np.ndarray, np.ndarray]]:
+        found = filter_consistent(number, small, swept, neighbours, values)
+        return found, _fill_planes(found, small[number], every_m)
+
+    found, guesses = zip(*map_parallel(filtered, range(len(small))), strict=True)
     guesses_m = [guess_m for guess_m, _ in guesses]
     for number, photo in enumerate(small):
         votes, _ = count_votes(number, small, guesses_m, neighbours[number], values.agreement)

@@ -6,6 +6,7 @@ import numpy as np
 
 from world2minecraft.core.coordinates import invert_rigid
 from world2minecraft.core.errors import CaptureError
+from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.progress import Progress
 from world2minecraft.core.types import Camera
 from world2minecraft.core.types.photos import PhotoStream, SparseScene
@@ -54,7 +55,7 @@ def prepare_stereo_photos(
     """
     order = {name: frame for frame, name in enumerate(scene.names)}
     found: dict[str, StereoPhoto] = {}
-    for photo in photos:
+    for photo in read_ahead(photos):
         if photo.name not in order or photo.name in found:
             continue
         found[photo.name] = _prepare_photo(

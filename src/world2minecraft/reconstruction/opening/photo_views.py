@@ -11,6 +11,7 @@ from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.capture.validation import ValidatedCapture
 from world2minecraft.capture.view_stream import read_view
 from world2minecraft.core.errors import CaptureError, InputError
+from world2minecraft.core.parallel import read_ahead
 from world2minecraft.core.types import Camera, DepthMap, Photo, PhotoStream, SparseScene, View
 from world2minecraft.geometry.undistort import pinhole_camera, undistort_image
 
@@ -96,7 +97,7 @@ def _resized(depth_path: ImagePlace, camera: Camera) -> Camera:
 def _photos_of(photos: PhotoStream, scene: SparseScene) -> Iterator[tuple[Photo, int]]:
     """Yield the posed photos with their indices in the scene."""
     places = {name: index for index, name in enumerate(scene.names)}
-    for photo in photos:
+    for photo in read_ahead(photos):
         if photo.name in places:
             yield photo, places[photo.name]
 
