@@ -71,9 +71,12 @@ docs: $(STAMP)  ## Build the documentation site in site/; warnings are errors.
 forge:  ## Build SceneForge's page from its TypeScript (needs Node 20 and npm).
 	@cd src/world2minecraft/sceneforge/web && npm ci --no-audit --no-fund --silent && npm run --silent build
 
+# The tests start hundreds of processes: keep their bytecode, and use one thread in each for matrices.
+TEST_ENVIRONMENT := PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+
 test: $(STAMP)  ## Run the tests, one file per core (TESTS=tests/reconstruction/fusion for a part).
-	@$(BIN)/python -m world2minecraft doctor --warm > /dev/null
-	@$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
+	@$(TEST_ENVIRONMENT) $(BIN)/python -m world2minecraft doctor --warm > /dev/null
+	@$(TEST_ENVIRONMENT) $(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 
 coverage: $(STAMP)  ## Run the tests and report the lines that no test reaches (90 % coverage is required).
 	@rm -f .coverage .coverage.*

@@ -14,7 +14,6 @@ from world2minecraft import cli
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.file_names import is_text, readable_name
 from world2minecraft.core.files import write_text
-from world2minecraft.core.jit import KERNEL_CACHE
 from world2minecraft.formats.occupancy_files import labels_grid
 from world2minecraft.formats.run_arrays import write_room
 from world2minecraft.furniture.user_library import check_name
@@ -103,7 +102,6 @@ def test_a_home_that_cannot_be_written_is_no_obstacle(room, tmp_path):
     (tmp_path / "home").write_text("a file")  # Permissions do not stop an administrator.
     folders = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME")
     nowhere = dict.fromkeys(folders, str(tmp_path / "home" / "nobody"))
-    nowhere["NUMBA_CACHE_DIR"] = str(KERNEL_CACHE)  # Compiling takes long.
     words = ["build", str(room), "--out", str(tmp_path / "OUT")]
     done = run_in(nowhere, words)
     assert done.returncode == 0, done.stderr

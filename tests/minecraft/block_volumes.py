@@ -1,5 +1,7 @@
 """Volumes that the tests of this folder share."""
 
+from functools import cache
+
 import numpy as np
 
 from world2minecraft.core.coordinates import block_to_room
@@ -8,10 +10,15 @@ from world2minecraft.minecraft.block_states import known_blocks, states_of
 from world2minecraft.minecraft.nbt import Byte, Float
 
 
+@cache
+def every_state() -> list[str]:
+    return [str(state) for name in known_blocks() for state in states_of(name)]
+
+
 def some_states(count: int, seed: int) -> tuple[str, ...]:
     """Different states of the game's table, none of them air."""
     rng = np.random.default_rng(seed)
-    every = [str(state) for name in known_blocks() for state in states_of(name)]
+    every = every_state()
     picked = rng.choice(len(every), count, replace=False)
     return tuple(every[index] for index in sorted(picked) if every[index] != AIR)
 

@@ -2,12 +2,12 @@
 
 from collections import Counter
 from dataclasses import replace
+from importlib import import_module
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.navigation.vln_sets import next_action, next_view
-from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize
 
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.navigation.exporters.options import (
@@ -30,7 +30,8 @@ sides = st.integers(28, 4000)
 
 @given(sides, sides)
 def test_a_picture_takes_the_tokens_of_qwens_own_processor(width, height):
-    rows, columns = smart_resize(height, width, 28, MIN_PIXELS, MAX_PIXELS)
+    processor = import_module("transformers.models.qwen2_vl.image_processing_pil_qwen2_vl")
+    rows, columns = processor.smart_resize(height, width, 28, MIN_PIXELS, MAX_PIXELS)
     if max(width, height) / min(width, height) < 100:
         assert image_tokens(width, height, 1 << 30) == rows * columns // 28**2
 

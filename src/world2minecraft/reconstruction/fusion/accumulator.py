@@ -140,20 +140,21 @@ class EvidenceMap:
         if not len(evidence.points_m):
             return
         voxel_m, blocks, rules = self.parameters.voxel_m, self.blocks, self._rules
-        points, low, high = to_cells(evidence.points_m, self.scan_to_room[:3] / voxel_m)
+        points_m = _read_only(evidence.points_m, _NO_VECTORS)
+        points, low, high = to_cells(points_m, self.scan_to_room[:3] / voxel_m)
         camera = apply(self.scan_to_room, evidence.camera_m) / voxel_m
         blocks.reserve_box(
             np.floor(np.minimum(low, camera)).astype(np.int64) - REACH_CELLS,
             np.floor(np.maximum(high, camera)).astype(np.int64) + 1 + REACH_CELLS,
             voxel_m,
         )
-        nothing = _NO_VECTORS, _NO_NUMBERS, _NO_COLOURS
-        given = evidence.normals, evidence.trust, evidence.colour
-        normals, trust, colour = (
-            empty if values is None else values
-            for values, empty in zip(given, nothing, strict=True)
+        view = ViewPoints(
+            points,
+            _read_only(evidence.normals, _NO_VECTORS),
+            _read_only(evidence.weight, _NO_NUMBERS),
+            _read_only(evidence.trust, _NO_NUMBERS),
+            _read_only(evidence.colour, _NO_COLOURS),
         )
-        view = ViewPoints(points, normals, evidence.weight, trust, colour)
         turn = np.ascontiguousarray(self.scan_to_room[:3, :3])
         place = ViewPlace(camera, turn, self.parameters.nudge_m / voxel_m, voxel_m)
         owner, places, sums = sum_cells(view, place, blocks.by_cell, blocks.mark, self._base)
@@ -245,6 +246,17 @@ def fuse_views(
     if done < total:  # Some views gave nothing.
         progress("fuse", total, total)
     return map_.fused()
+
+
+def _read_only(values: np.ndarray | None, empty: np.ndarray) -> np.ndarray:
+    """Return values, or ``empty`` in place of None, as a view that kernels are compiled for.
+
+    Each mixture of arrays that may be written and arrays that may not is a type of its own, which
+    takes seconds to compile.
+    """
+    view = np.ascontiguousarray(empty if values is None else values).view()
+    view.flags.writeable = False
+    return view
 
 
 _NO_VECTORS = np.zeros((0, 3), np.float32)
