@@ -129,7 +129,7 @@ def _extract_batch(
         database, images, camera_mode=pycolmap.CameraMode.PER_IMAGE,
         extraction_options=options, device=pycolmap.Device.cpu,
     )  # fmt: skip
-    found = {}
+    found: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     with pycolmap.Database.open(database) as stored:
         for image in stored.read_all_images():
             keypoints = np.asarray(stored.read_keypoints(image.image_id)).reshape(-1, 6)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from world2minecraft.capture.stereo.consistency import check_consistency, filter_speckles
 from world2minecraft.capture.stereo.monocular_depth import DepthModel, fill_holes
@@ -124,16 +125,17 @@ def compute_depth_maps(
     swept, neighbours = sweep_photos(small, values, progress)
     every_m = np.concatenate([photo.guide_m for photo in small])
 
-    def filtered(number: int) -> tuple[DepthMap, tuple[np.ndarray, np.ndarray]]:
+    def filtered(number: int) -> tuple[DepthMap, np.ndarray, np.ndarray]:
         found = filter_consistent(number, small, swept, neighbours, values)
-        return found, _fill_planes(found, small[number], every_m)
+        return found, *_fill_planes(found, small[number], every_m)
 
-    found, guesses = zip(*map_parallel(filtered, range(len(small))), strict=True)
-    guesses_m = [guess_m for guess_m, _ in guesses]
-    for number, photo in enumerate(small):
+    with threadpool_limits(1, "blas"):  # Small products: our threads are enough.
+        estimates = map_parallel(filtered, range(len(small)))
+    guesses_m = [guess_m for _, guess_m, _ in estimates]
+    for number, (photo, (found, guess_m, guessed)) in enumerate(zip(small, estimates, strict=True)):
         votes, _ = count_votes(number, small, guesses_m, neighbours[number], values.agreement)
         agreed = votes >= max(values.agreeing, MIN_PLANE_VOTES)
-        result = _merge_planes(found[number], *guesses[number], agreed)
+        result = _merge_planes(found, guess_m, guessed, agreed)
         yield result if guide is None else _fill_from_network(result, photo, guide)
         progress(STAGE, len(small) + number + 1, 2 * len(small), photo.name)
 
