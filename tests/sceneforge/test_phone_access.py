@@ -18,7 +18,11 @@ from world2minecraft.sceneforge.phone_access import (
     qr_svg_uri,
     qr_text,
 )
-from world2minecraft.sceneforge.server.local_address import choose_address, own_addresses
+from world2minecraft.sceneforge.server.local_address import (
+    choose_address,
+    is_loopback,
+    own_addresses,
+)
 
 URL = "http://192.168.1.5:8485/"
 
@@ -150,3 +154,15 @@ def test_without_a_local_network_one_line_teaches(found):
 def test_own_addresses_are_each_named_once():
     found = own_addresses()
     assert len(found) == len(set(found))
+
+
+@pytest.mark.parametrize(
+    ("host", "expected"),
+    [
+        ("localhost", True), ("127.0.0.1", True), ("127.1.2.3", True), ("::1", True),
+        ("::ffff:127.0.0.1", True), ("::ffff:10.0.0.7", False), ("10.0.0.7", False),
+        ("fe80::1", False), ("testclient", False), ("", False),
+    ],
+)  # fmt: skip
+def test_only_loopback_addresses_are_this_machine(host, expected):
+    assert is_loopback(host) is expected

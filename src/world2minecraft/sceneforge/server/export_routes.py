@@ -31,6 +31,7 @@ from world2minecraft.sceneforge import export_options as exports
 from world2minecraft.sceneforge.game_folders import list_folder
 from world2minecraft.sceneforge.jobs.jobs import JobFunction, JobProgress
 from world2minecraft.sceneforge.jobs.subprocess_job import run_in_subprocess
+from world2minecraft.sceneforge.server.local_address import is_loopback
 from world2minecraft.sceneforge.server.request_parsing import get_workspace, read_json_object
 from world2minecraft.sceneforge.server.start_routes import DEFAULT_SCALE, SCALES, check_choice
 from world2minecraft.sceneforge.workspace import Workspace
@@ -145,8 +146,7 @@ def require_this_machine(request: Request) -> None:
     Raises:
         UsageError: If it comes from another machine.
     """
-    host = request.client.host if request.client else ""
-    if host not in ("127.0.0.1", "::1"):
+    if request.client is None or not is_loopback(request.client.host):
         raise UsageError("folders can be chosen only in a browser on the computer that runs w2m")
 
 

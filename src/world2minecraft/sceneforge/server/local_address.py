@@ -1,14 +1,32 @@
-"""The address of this machine on its local network."""
+"""The addresses of this machine: on its local network, and those that only it reaches."""
 
 import socket
 from collections.abc import Iterable
 from contextlib import suppress
-from ipaddress import ip_address
+from ipaddress import IPv6Address, ip_address
 
 from world2minecraft.core.errors import UsageError
 
 # Documentation addresses (RFC 5737): asking for the way to one sends nothing.
 FAR_AWAY = ("192.0.2.1", 9)
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether an address or a name means this machine itself.
+
+    Example:
+        >>> is_loopback("::ffff:127.0.0.1")  # As a server of both kinds of addresses sees it.
+        True
+    """
+    if host == "localhost":
+        return True
+    try:
+        address = ip_address(host)
+    except ValueError:
+        return False
+    if isinstance(address, IPv6Address) and address.ipv4_mapped is not None:
+        address = address.ipv4_mapped
+    return address.is_loopback
 
 
 def lan_address() -> str:

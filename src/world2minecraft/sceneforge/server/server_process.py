@@ -7,7 +7,6 @@ import ssl
 import threading
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager, suppress
-from ipaddress import ip_address
 from pathlib import Path
 from typing import Self
 
@@ -21,6 +20,7 @@ from world2minecraft.sceneforge.phone_access import PhoneAccess
 from world2minecraft.sceneforge.server.app import build_app
 from world2minecraft.sceneforge.server.guard import new_token
 from world2minecraft.sceneforge.server.limits import MAX_JSON_BYTES
+from world2minecraft.sceneforge.server.local_address import is_loopback
 from world2minecraft.sceneforge.server.phone_routes import phone_app
 from world2minecraft.sceneforge.session import Session
 from world2minecraft.sceneforge.uploads import MAX_UPLOAD_BYTES, user_home
@@ -68,7 +68,7 @@ class PageServer:
         self.socket = _listening(host, port, usual_port)
         self.host, self.port = host, int(self.socket.getsockname()[1])
         self.token = token or new_token()
-        self.is_open = not _is_loopback(host)
+        self.is_open = not is_loopback(host)
         config = uvicorn.Config(
             build(self.token, self.port),
             access_log=False,  # It would print the token.
@@ -244,7 +244,7 @@ class ForgeServer(PageServer):
         self.workspace = Workspace(
             self.session, home or user_home(), max_bytes=max_upload_bytes, capture=capture
         )
-        is_open = not _is_loopback(host)
+        is_open = not is_loopback(host)
         named = [*hosts, *([host, socket.gethostname()] if is_open else [])]
 
         def build(token: str, port: int) -> ASGIApp:
@@ -322,11 +322,3 @@ def _bound(host: str, port: int) -> socket.socket:
             f"cannot listen on {host}:{port} ({reason}); omit the port (--port) to use a free one"
         ) from error
     return held
-
-
-def _is_loopback(host: str) -> bool:
-    if host == "localhost":
-        return True
-    with suppress(ValueError):
-        return ip_address(host).is_loopback
-    return False
