@@ -91,10 +91,10 @@ def extract_features(
     stream = read_ahead(photos, 2 * threads)
     with pycolmap_session() as pycolmap, TemporaryDirectory(prefix="w2m-features-") as folder:
         options = _options(pycolmap, parameters, threads)
-        while some := list(islice(stream, 2 * threads)):
+        while batch := list(islice(stream, 2 * threads)):
             place = Path(folder) / str(len(gathered))
-            gathered += _extract_batch(some, place, options, pycolmap, parameters)
-            for _ in some:
+            gathered += _extract_batch(batch, place, options, pycolmap, parameters)
+            for _ in batch:
                 steps.done("features")
     names = [photo.name for photo in gathered]
     if len(set(names)) != len(names):

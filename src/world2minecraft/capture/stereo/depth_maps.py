@@ -221,7 +221,7 @@ def filter_consistent(
     neighbours: list[np.ndarray],
     values: StereoParameters,
 ) -> DepthMap:
-    """Return the depth of a photo that the depth maps of its neighbours confirm."""
+    """Return the depth map of a photo, reduced to depths that its neighbours confirm."""
     photo = small[number]
     votes, mean = count_votes(number, small, swept, neighbours[number], values.agreement)
     neighbour_count = max(1, len(neighbours[number]))

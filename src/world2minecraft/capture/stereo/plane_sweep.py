@@ -99,7 +99,7 @@ def _padded(grey, radius):
 
 @njit
 def _window_statistics(padded, radius, noise):
-    """Return the mean of each window and the inverse root of its variance times its area."""
+    """Return the mean of each window, and 1 / sqrt(area * variance)."""
     side = 2 * radius + 1
     height, width = padded.shape[0] - 2 * radius, padded.shape[1] - 2 * radius
     area = np.float32(side * side)
@@ -203,7 +203,7 @@ def _score_row(sums, mean, spread, seen, side, noise, box, scores):
 
 @lean
 def _mean_best_scores(scores, best, total, found, costs):
-    """Write the mean of the best scores of each pixel of a row as a cost.
+    """Convert the mean of the best scores of each pixel in a row to a cost.
 
     ``scores`` [N, w] is overwritten; ``best`` [B, w], ``total`` and ``found`` [w] are work space.
     """

@@ -115,7 +115,7 @@ class EvidenceMap:
         )
 
     def _dense(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the log-odds and record numbers of the box of all blocks, and its lowest cell."""
+        """Return dense log-odds and record numbers over all blocks, and the lowest cell."""
         numbers, first = self.blocks.cells_of_blocks()
         if not len(numbers):
             return np.zeros((1, 1, 1), np.float32), np.zeros((1, 1, 1), np.int32), np.zeros(3)
@@ -249,10 +249,10 @@ def fuse_views(
 
 
 def _read_only(values: np.ndarray | None, empty: np.ndarray) -> np.ndarray:
-    """Return values, or ``empty`` in place of None, as a view that kernels are compiled for.
+    """Return a read-only view of the values, or of ``empty`` if they are None.
 
-    Each mixture of arrays that may be written and arrays that may not is a type of its own, which
-    takes seconds to compile.
+    numba compiles a kernel again for each mixture of writable and read-only arrays, which takes
+    seconds.
     """
     view = np.ascontiguousarray(empty if values is None else values).view()
     view.flags.writeable = False

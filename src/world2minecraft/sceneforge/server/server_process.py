@@ -248,6 +248,7 @@ class ForgeServer(PageServer):
         named = [*hosts, *([host, socket.gethostname()] if is_open else [])]
 
         def build(token: str, port: int) -> ASGIApp:
+            """Create the application for the server's token and port."""
             return build_app(
                 self.session,
                 workspace=self.workspace,
