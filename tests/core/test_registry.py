@@ -21,11 +21,11 @@ def offer(monkeypatch, **targets):
     """Stand in for installed packages that declare entry points."""
     asked = []
 
-    def entry_points(group):
+    def points_of(group, search_path):
         asked.append(group)
-        return [EntryPoint(name, target, group) for name, target in targets.items()]
+        return tuple(EntryPoint(name, target, group) for name, target in targets.items())
 
-    monkeypatch.setattr(registry, "entry_points", entry_points)
+    monkeypatch.setattr(registry, "points_of", points_of)
     return asked
 
 
@@ -78,3 +78,15 @@ def test_a_later_change_of_the_table_does_not_reach_in():
     made = Registry("labeller", table)
     table.clear()
     assert made.names()[:2] == ("geometric", "json")
+
+
+def test_a_package_found_later_is_known(monkeypatch, tmp_path):
+    late = Registry("late", {})
+    assert late.names() == ()
+    information = tmp_path / "late-1.0.dist-info"
+    information.mkdir()
+    (information / "METADATA").write_text("Metadata-Version: 2.1\nName: late\nVersion: 1.0\n")
+    (information / "entry_points.txt").write_text("[world2minecraft.late]\nmine = json:dumps\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert late.names() == ("mine",)
+    assert late.load("mine")([1]) == "[1]"

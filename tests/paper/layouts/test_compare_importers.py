@@ -275,10 +275,10 @@ def test_another_package_adds_a_format(tmp_path, monkeypatch):
 
     groups = []
 
-    def entry_points(group):
+    def points_of(group, search_path):
         groups.append(group)
-        return [SimpleNamespace(name="mine", load=Ours)]
+        return (SimpleNamespace(name="mine", load=Ours),)
 
-    monkeypatch.setattr("world2minecraft.core.registry.entry_points", entry_points)
+    monkeypatch.setattr("world2minecraft.core.registry.points_of", points_of)
     assert read_layouts_of(write(tmp_path / "x.json", ["mine"])) == [bedroom]
     assert set(groups) == {"world2minecraft.layout_format"}
