@@ -97,22 +97,23 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         base, capture = Path(folder), options.capture.resolve()
         with earlier_sources(options.commit, base / "former") as former:
+            long = capture
             if options.repeat_frames > 1:
-                capture = lengthened(capture, options.repeat_frames, base / "capture")
+                long = lengthened(capture, options.repeat_frames, base / "capture")
             now = ROOT / "src"
             cores = len(os.sched_getaffinity(0))
             rows = {
-                options.commit: (former, base / "a", capture, (), cores),
-                "now, the same stages": (now, base / "b", capture, FORMER, cores),
-                "now": (now, base / "b", capture, (), cores),
-                "now, one core": (now, base / "b", capture, (), 1),
+                options.commit: (former, base / "a", (), cores),
+                "now, the same stages": (now, base / "b", FORMER, cores),
+                "now": (now, base / "b", (), cores),
+                "now, one core": (now, base / "b", (), 1),
             }
+            for source, cache, *job in rows.values():  # The first run compiles the kernels.
+                measure(source, cache, capture, *job)
             costs: dict[str, list[Cost]] = {name: [] for name in rows}
-            for turn in range(options.repeats + 1):
-                for name, row in rows.items():
-                    cost = measure(*row)
-                    if turn:  # The first compiles the kernels.
-                        costs[name].append(cost)
+            for _ in range(options.repeats):
+                for name, (source, cache, *job) in rows.items():
+                    costs[name].append(measure(source, cache, long, *job))
     found = {name: least(of) for name, of in costs.items()}
     before, same, new, alone = found.values()
     for name, cost in found.items():

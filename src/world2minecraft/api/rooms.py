@@ -142,7 +142,8 @@ def reconstruct(
         follow: Watch a capture that is still being recorded until a file named ``done`` appears.
         follow_idle_s: Seconds to wait for a new frame before the capture is considered complete.
         settings: Further parameters, such as ``{"find.cluster_radius": 3}``.
-        force: Write into a folder that contains other files.
+        force: Write into a folder that contains other files, the reconstruction of another
+            capture, or edits saved in SceneForge.
         progress: Callback that receives the stage, the number of completed steps, the total number
             of steps and a note.
 
@@ -150,7 +151,8 @@ def reconstruct(
         The run with its room, objects, world and report.
 
     Raises:
-        UsageError: If an argument is invalid, or the folder contains other files without ``force``.
+        UsageError: If an argument is invalid, or something in the folder would be lost without
+            ``force``.
         ConflictError: If another process writes the folder.
         CaptureError: If the capture cannot be used.
         OutputError: If the output folder cannot be written.
@@ -189,7 +191,7 @@ def reconstruct(
         if not _build_lone_plan(place, folder, chosen, needs_frames, progress):
             label_folder = None if labels is None else Path(labels)
             idle_s = follow_idle_s if follow else None
-            _reconstruct_frames(place, folder, chosen, start, label_folder, idle_s, progress)
+            _reconstruct_frames(place, folder, chosen, start, label_folder, idle_s, force, progress)
     return Run(folder)
 
 
@@ -200,6 +202,7 @@ def _reconstruct_frames(
     start: str | None,
     labels: Path | None,
     idle_s: float | None,
+    force: bool,
     progress: Progress,
 ) -> None:
     """Reconstruct frames, after following their recording unless ``idle_s`` is None."""
@@ -207,10 +210,41 @@ def _reconstruct_frames(
     from world2minecraft.reconstruction import online
     from world2minecraft.runs import run_capture
 
+    _check_replaced(capture, out, start, force)
     if idle_s is not None:
         compiled = compile_first(progress)
         online.follow(capture, out, chosen, labels=labels, idle_s=idle_s, progress=compiled)
     run_capture(capture, out, chosen, start, labels, progress)
+
+
+def _check_replaced(capture: Path, out: Path, start: str | None, force: bool) -> None:
+    """Check that no finished run of another capture and no saved edits are lost without ``force``.
+
+    Forced, the copy of another capture in the output folder is removed, as nothing of it remains.
+
+    Raises:
+        UsageError: If something would be lost.
+    """
+    import shutil
+
+    from world2minecraft.core.errors import UsageError
+    from world2minecraft.reconstruction.run_folder import is_run_of_another
+    from world2minecraft.sceneforge.document.document_metadata import holds_saved_edits
+
+    if start is None and capture.exists() and is_run_of_another(capture, out):
+        if not force:
+            raise UsageError(
+                f"{out} contains the reconstruction of another capture, or of this one before its "
+                "files changed; choose another folder, or pass force (--force) to replace it"
+            )
+        copy = out / "capture"
+        if copy.is_dir() and not capture.resolve().is_relative_to(copy.resolve()):
+            shutil.rmtree(copy)
+    if start not in ("build", "report") and not force and holds_saved_edits(out):
+        raise UsageError(
+            f"{out} contains edits saved in SceneForge, which would be lost; choose another "
+            "folder, keep them with start 'build' (--from build), or pass force (--force)"
+        )
 
 
 def build(

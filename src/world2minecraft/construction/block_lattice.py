@@ -12,7 +12,7 @@ from world2minecraft.core.coordinates import ROOM_CORNER_BLOCK, apply, room_to_b
 from world2minecraft.core.errors import UsageError
 from world2minecraft.core.types import OccupancyGrid
 
-MAX_BLOCKS = 1 << 27  # A 40 x 40 x 5 m hall at 12.5 blocks a metre has 16 million.
+MAX_BLOCKS = 1 << 25  # A 40 x 40 x 5 m hall at 12.5 blocks a metre has 16 million.
 FLOOR_LAYER = ROOM_CORNER_BLOCK[1] - 1
 UNDER_FLOOR = 0.75  # Blocks by which a bottom may dip below the floor that it stands on.
 MARGIN = 2  # The shell and the invisible edge stand outside the room.

@@ -82,7 +82,8 @@ def reconstruct(
         OutputError: If ``out`` cannot be written.
         UsageError: If a parameter differs from that of a finished stage before ``start``.
     """
-    run = RunFolder(out, STAGES, start)
+    # The find stage changes the grid of the label stage, which is therefore computed again.
+    run = RunFolder(out, STAGES, "label" if start == "find" else start)
     resumed = resume_parameters(out, start, STAGES, parameters or Parameters())
     chosen = resumed.parameters
     first = 0 if start is None else STAGES.index(start)

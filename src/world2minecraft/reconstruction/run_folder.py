@@ -162,6 +162,15 @@ def finished_stages(folder: Path) -> list[str]:
     return [str(name) for name in finished] if isinstance(finished, list) else []
 
 
+def is_run_of_another(capture: Path, folder: Path) -> bool:
+    """Return whether a folder contains the run of a capture with other files."""
+    path = folder / "manifest.json"
+    if "furnish" not in finished_stages(folder):
+        return False
+    stated = read_json(path).get("capture")
+    return stated is not None and stated != hash_capture(capture, without=folder)
+
+
 def check_finished(folder: Path) -> None:
     """Check that a folder contains a run from which a world can be built.
 

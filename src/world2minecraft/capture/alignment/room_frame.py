@@ -234,7 +234,8 @@ def _notes(frame: LevelFrame, box: RoomBox, size: np.ndarray) -> tuple[str, ...]
         notes.append("no floor was seen; the lowest points are used as floor height")
     sides = [name for side, name in COMPASS_OF_SIDE.items() if side not in box.seen]
     if sides:
-        names = f"the {' and '.join(sides)} side{'s' * (len(sides) > 1)}"
+        listed = " and ".join(filter(None, (", ".join(sides[:-1]), sides[-1])))
+        names = f"the {listed} side{'s' * (len(sides) > 1)}"
         notes.append(f"no wall was seen at {names}; the room extends to the outermost points there")
     if "z+" not in box.seen:
         notes.append(f"no ceiling was seen; the room is at least {size[2]:.2f} m high")

@@ -61,6 +61,15 @@ def is_document(path: Path) -> bool:
     return (path / DOCUMENT_FILE).is_file()
 
 
+def holds_saved_edits(run: Path) -> bool:
+    """Return whether the files of a run contain edits that were saved in SceneForge."""
+    folder = document_folder(None, run)
+    if not is_document(folder) or saving.saved_rev(folder) == 0:
+        return False
+    written = saving.saved_hashes(folder)
+    return all(saving.sha256(run / name) in written for name in saving.SAVED_FILES)
+
+
 def write_identity(folder: Path, opened: OpenedScene, generation: str) -> None:
     """Create a document for a scene that was read.
 
