@@ -21,7 +21,7 @@ from world2minecraft.navigation.data.set_building import (
     build_navigation_set,
     composition_of,
 )
-from world2minecraft.navigation.data.splits import PAPER_SHARE, paper_splits, tour_of
+from world2minecraft.navigation.data.splits import PAPER_SHARE, paper_splits, seen_splits, tour_of
 from world2minecraft.navigation.records import read_episodes, read_items, read_trajectories
 from world2minecraft.navigation.types import (
     Instruction,
@@ -35,9 +35,34 @@ from world2minecraft.navigation.types import (
 RECORDS = ("items.jsonl", "trajectories.jsonl", "episodes.jsonl", "dataset.json")
 
 
-def a_walk(name):
+def a_walk(name, split="train"):
     frame = Keyframe(f"{name}.jpg", Stance(0, 0, 0), "stop", ())
-    return Trajectory(name, "s", (frame,), (Instruction("Go."),), 2.0, "train", 0.25)
+    scene = name.partition("_")[0]
+    return Trajectory(name, scene, (frame,), (Instruction("Go."),), 2.0, split, 0.25)
+
+
+@given(
+    st.lists(st.lists(st.integers(1, 4), min_size=1, max_size=30), max_size=8), st.integers(0, 5)
+)
+@settings(max_examples=60, deadline=None)
+def test_one_tour_in_ten_is_seen_and_each_scene_is_trained(scenes, seed):
+    walks = [
+        a_walk(f"s{s}_t{t:02d}_{n:03d}")
+        for s, sizes in enumerate(scenes)
+        for t, size in enumerate(sizes)
+        for n in range(size)
+    ]
+    unseen = [a_walk(f"u_t{t:02d}_000", "val_unseen") for t in range(20)]
+    splits = seen_splits(walks + unseen, seed)
+    assert splits == seen_splits(unseen + walks[::-1], seed)
+    assert {splits.pop(one.trajectory_id) for one in unseen} == {"val_unseen"}
+    by_tour = {(tour_of(name), split) for name, split in splits.items()}
+    total = sum(len(sizes) for sizes in scenes)
+    assert len(by_tour) == total
+    held = sum(split == "val_seen" for _, split in by_tour)
+    assert held == min(max(1, round(total / 10)), total - len(scenes))
+    trained = {tour.partition("_")[0] for tour, split in by_tour if split == "train"}
+    assert len(trained) == len(scenes)
 
 
 @given(st.lists(st.integers(1, 6), min_size=1, max_size=40), st.integers(0, 5))

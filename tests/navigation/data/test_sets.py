@@ -24,7 +24,6 @@ from world2minecraft.navigation.data.set_building import (
 from world2minecraft.navigation.data.splits import (
     find_leaks,
     scene_splits,
-    split_of_tour,
     without_shared_pictures,
 )
 from world2minecraft.navigation.data.statistics import (
@@ -66,13 +65,6 @@ def test_the_order_of_scenes_does_not_matter(names, seed):
     for kind in set(kinds.values()):
         own = [splits[name] for name in names if kinds[name] == kind]
         assert 0 < own.count("val_unseen") < len(own) or len(own) < 3
-
-
-def test_a_tour_of_an_unseen_scene_is_unseen():
-    tours = [f"scene_t{n:02d}" for n in range(400)]
-    assert {split_of_tour(one, "val_unseen") for one in tours} == {"val_unseen"}
-    seen = [split_of_tour(one, "train") for one in tours].count("val_seen")
-    assert 20 <= seen <= 65  # A tenth.
 
 
 def test_letters_come_as_often_as_each_other():

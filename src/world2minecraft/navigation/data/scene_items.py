@@ -19,7 +19,6 @@ from world2minecraft.navigation.data.picture_store import (
     vln_camera,
 )
 from world2minecraft.navigation.data.planned_walks import TourPlanner
-from world2minecraft.navigation.data.splits import split_of_tour
 from world2minecraft.navigation.data.tasks import (
     GRADE_SHARES,
     GRADES,
@@ -213,9 +212,8 @@ class _TrajectoryRecorder:
         if fault:
             self._work.refused[fault] += 1
             return 0
-        split = split_of_tour(candidate.tour_id, self._split, self._rule.seed)
         pictures = self._written(candidate, shots)
-        trajectory = _trajectory(self._scene, candidate, pictures, split)
+        trajectory = _trajectory(self._scene, candidate, pictures, self._split)
         spoken = _choose_instruction(candidate.instructions, self._rule.levels, rng)
         work, name = self._work, candidate.trajectory_id
         work.trajectories.append(trajectory)
@@ -223,7 +221,7 @@ class _TrajectoryRecorder:
         balanced = self._rule.balanced
         work.actions[name] = action_steps(candidate.marks, candidate.clear, rng, balanced)
         work.views += self._views(candidate, pictures, spoken, rng)
-        work.episodes.append(_episode(self._scene, candidate, spoken, split, self._rule))
+        work.episodes.append(_episode(self._scene, candidate, spoken, self._split, self._rule))
         return 1
 
     def _written(

@@ -14,7 +14,7 @@ of the scenes, and results are kept in the order in which the scenes were given.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -49,6 +49,7 @@ from world2minecraft.navigation.data.splits import (
     find_leaks,
     paper_splits,
     scene_splits,
+    seen_splits,
     without_shared_pictures,
 )
 from world2minecraft.navigation.records import (
@@ -61,7 +62,7 @@ from world2minecraft.navigation.records import (
     write_trajectories,
 )
 from world2minecraft.navigation.scene import open_scene
-from world2minecraft.navigation.types import Item
+from world2minecraft.navigation.types import Item, Trajectory
 
 WALKS_PER_SCENE = {"base": 30, "extend": 110}  # Trajectories for a set of the paper's size.
 RECONSTRUCTED = ("room.npz", "placements.json")  # Files of a run folder.
@@ -277,8 +278,7 @@ def build_navigation_set(
         for path, kind in wanted.items()
     ]  # fmt: skip
     works = run_scene_jobs(jobs, workers, progress)
-    if how.paper_split:
-        _split_as_the_paper(works, how.work.seed)
+    _split_walks(works, paper_splits if how.paper_split else seen_splits, how.work.seed)
     items = without_shared_pictures(build_items(works, how.work.seed))
     items = cut_to_paper_size(items, how.paper_split) if how.paper_size else items
     if not items:
@@ -306,11 +306,15 @@ def _state_paths(works: Sequence[SceneItems], paths: Mapping[str, tuple[str, str
             ]
 
 
-def _split_as_the_paper(works: Sequence[SceneItems], seed: int) -> None:
-    """Assign the trajectories and episodes of each composition to the paper's splits."""
+def _split_walks(
+    works: Sequence[SceneItems],
+    split: Callable[[Sequence[Trajectory], int], dict[str, str]],
+    seed: int,
+) -> None:
+    """Assign the trajectories and episodes of each composition to splits."""
     for kind in {work.composition for work in works}:
         own = [work for work in works if work.composition == kind]
-        splits = paper_splits([one for work in own for one in work.trajectories], seed)
+        splits = split([one for work in own for one in work.trajectories], seed)
         for work in own:
             work.trajectories = [
                 replace(one, split=splits[one.trajectory_id]) for one in work.trajectories

@@ -7,14 +7,14 @@ about a walk belong to one split.
 
 import hashlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from world2minecraft.core.errors import UsageError
 from world2minecraft.navigation.types import Item, Trajectory
 
 UNSEEN_SHARE = 0.2  # Of the scenes of each composition; the paper's test set has 21 % of the items.
-SEEN_SHARE = 0.1  # Of the tours of the other scenes.
+TOURS_PER_SEEN = 10  # One of so many tours of the other scenes is held out.
 PAPER_SHARE = 0.23  # Of the walks; the paper holds out 14 to 23 % of the items of each part.
 
 
@@ -49,17 +49,30 @@ def scene_splits(
     return {name: splits[name] for name in compositions}
 
 
-def split_of_tour(tour_id: str, scene_split: str, seed: int = 0) -> str:
-    """Return a tour's split: that of its scene, or val_seen for some training tours.
+def seen_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str, str]:
+    """Split the trajectories of training scenes into training and ``val_seen``.
+
+    Whole tours, sorted by a hash of seed and name, become ``val_seen``: one in ``TOURS_PER_SEEN``,
+    rounded, but at least one. Of each scene, one tour remains in training.
 
     Args:
-        tour_id: The ID of the tour.
-        scene_split: The split of the scene.
+        trajectories: The trajectories of one composition. Held-out ones keep their split.
         seed: The seed of the hash.
+
+    Returns:
+        The split of each trajectory by its ID.
     """
-    if scene_split != "train":
-        return scene_split
-    return "val_seen" if _sum(seed, f"tour {tour_id}") / 2**64 < SEEN_SHARE else "train"
+    scene_of = {
+        tour_of(one.trajectory_id): one.scene_id for one in trajectories if one.split == "train"
+    }
+    tours = _sorted_tours(scene_of, seed)
+    trained = set({scene_of[tour]: tour for tour in tours}.values())  # The last one of each scene.
+    count = max(1, round(len(tours) / TOURS_PER_SEEN))
+    held = [tour for tour in tours if tour not in trained][:count]
+    return {
+        one.trajectory_id: "val_seen" if tour_of(one.trajectory_id) in held else one.split
+        for one in trajectories
+    }
 
 
 def paper_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str, str]:
@@ -77,7 +90,7 @@ def paper_splits(trajectories: Sequence[Trajectory], seed: int = 0) -> dict[str,
     """
     walks = Counter(tour_of(one.trajectory_id) for one in trajectories)
     held, left = set[str](), PAPER_SHARE * len(trajectories)
-    for tour in sorted(walks, key=lambda name: (_sum(seed, f"tour {name}"), name)):
+    for tour in _sorted_tours(walks, seed):
         if left <= 0:
             break
         held.add(tour)
@@ -96,6 +109,10 @@ def tour_of(trajectory_id: str) -> str:
         'kitchen_t03'
     """
     return trajectory_id.rpartition("_")[0]
+
+
+def _sorted_tours(tours: Iterable[str], seed: int) -> list[str]:
+    return sorted(tours, key=lambda name: (_sum(seed, f"tour {name}"), name))
 
 
 def _sum(seed: int, name: str) -> int:
