@@ -34,7 +34,7 @@ CAMERA = camera_of(48, 36, vertical_fov_deg=70)
 DOOR = "minecraft:oak_door[facing=west,half={half},hinge=left,open=false,powered=false]"
 PALETTE = (AIR, "minecraft:stone", DOOR.format(half="lower"), DOOR.format(half="upper"),
            "minecraft:white_carpet", "minecraft:oak_slab[type=bottom,waterlogged=false]",
-           "minecraft:lava[level=0]")  # fmt: skip
+           "minecraft:lava[level=0]", "minecraft:barrier[waterlogged=false]")  # fmt: skip
 
 
 def house(scale=1.0, door=True):
@@ -174,6 +174,35 @@ def test_one_turns_round_in_a_closet():
 def test_a_floor_without_a_roof_is_walked_too():
     volume = built(np.ones((8, 1, 8), np.uint16))
     assert {round(pose.y, 6) for pose in eyes_of(plan_tour(volume, CAMERA, 4), volume)} == {62.62}
+
+
+@pytest.mark.parametrize("block", [1, 7])
+def test_a_tour_is_on_the_floor_not_on_what_surrounds_it(block):
+    states = np.ones((12, 4, 12), np.uint16)
+    states[:, 1:] = block
+    states[4:8, 1:, 4:8] = 0
+    semantic = np.zeros(states.shape, np.uint8)
+    semantic[:, 0] = SemanticClass.FLOOR
+    volume = replace(built(states), semantic=semantic)
+    shots = plan_tour(volume, CAMERA, 4).shots
+    frames = draw_frames(prepare_scene(volume), CAMERA, [shot.camera_to_room for shot in shots])
+    assert min(np.isfinite(picture.depth_m).mean() for picture in frames) > 0.5
+    assert {round(pose.y, 6) for pose in eyes_of(plan_tour(volume, CAMERA, 4), volume)} == {62.62}
+
+
+def test_a_barrier_that_closes_a_hole_in_the_floor_carries():
+    volume = built(np.full((8, 1, 8), 7, np.uint16))
+    assert {round(pose.y, 6) for pose in eyes_of(plan_tour(volume, CAMERA, 4), volume)} == {62.62}
+
+
+def test_a_tour_without_a_ceiling_looks_lower():
+    pitches = []
+    for top in (5, 3):
+        volume = built(house(door=False).states[:, :top])
+        pitches += [
+            {round(pose.pitch_deg) for pose in eyes_of(plan_tour(volume, CAMERA, 4), volume)}
+        ]
+    assert pitches == [{9}, {17}]
 
 
 def test_where_nobody_can_stand_there_is_no_tour():

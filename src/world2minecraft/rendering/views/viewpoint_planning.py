@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
+from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.physics.shortest_paths import clearance_m
@@ -44,7 +45,7 @@ class WalkRoutes:
         indoors = _indoors(self.hiding, graph.feet)
         room_m = clearance_m(graph)
         cost = _two_way_steps(graph, 1 + OUTSIDE_COST * ~indoors + _narrowness(room_m))
-        kept = _best_part(cost, indoors, share_m2)
+        kept = _best_part(cost, indoors, share_m2, graph.ground == SemanticClass.FLOOR)
         self.feet, self.indoors, self.room_m = graph.feet[kept], indoors[kept], room_m[kept]
         self._graph = csr_array(cost[kept][:, kept])
 
@@ -156,14 +157,20 @@ def _two_way_steps(graph: WalkGraph, cost_of: np.ndarray) -> csr_array:
     return both
 
 
-def _best_part(graph: csr_array, indoors: np.ndarray, share_m2: np.ndarray) -> np.ndarray:
-    """Return the places of the part with most floor indoors, or most floor where none is."""
+def _best_part(
+    graph: csr_array, indoors: np.ndarray, share_m2: np.ndarray, floor: np.ndarray
+) -> np.ndarray:
+    """Return the places of the part with most area indoors, else on blocks of the class floor.
+
+    Where neither is as large as a room, the part with the largest area counts.
+    """
     count, part = connected_components(graph, directed=False)
-    inside = np.bincount(part, weights=share_m2 * indoors, minlength=count)
-    sizes = np.bincount(part, weights=share_m2, minlength=count)
-    is_room = inside.max() >= MIN_ROOM_M2 - 1e-9
-    best = int(inside.argmax() if is_room else sizes.argmax())
-    return np.flatnonzero(part == best)
+    areas = [
+        np.bincount(part, weights=share_m2 * chosen, minlength=count)
+        for chosen in (indoors, floor, np.ones(len(part)))
+    ]
+    best = next((area for area in areas if area.max() >= MIN_ROOM_M2 - 1e-9), areas[-1])
+    return np.flatnonzero(part == best.argmax())
 
 
 def _nearest_neighbour_tour(between: np.ndarray, first: int) -> list[int]:

@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 from world2minecraft.core.classes import SemanticClass
 from world2minecraft.core.coordinates import eye_height_blocks
 from world2minecraft.core.errors import UsageError
-from world2minecraft.core.types import BlockVolume, Camera
+from world2minecraft.core.types import AIR, BlockVolume, Camera
 from world2minecraft.minecraft.physics.walk_graph import is_shut, open_door
 from world2minecraft.rendering.views.cameras import GamePose, Shot
 from world2minecraft.rendering.views.viewpoint_planning import WalkRoutes
@@ -38,6 +38,8 @@ TURN_SMOOTH_M = 0.5  # and turns of the head.
 WALK_M_S, TURN_DEG_S = 1.0, 50.0  # One slows down to turn.
 MAX_DURATION_S = 40.0  # Of a moving picture, where nobody says how many frames it has.
 PITCH_DEG = 9.0  # Furniture lies lower than the eye.
+OPEN_PITCH_DEG = 17.0  # Without a ceiling: a build that ends at the eye's height is below.
+UPWARD_DEG, OPEN_SHARE = -20.0, 0.5  # There is no ceiling where more rays upward hit nothing.
 MIN_STILL_RATE = 0.08  # Of stills, where a view is bad; 1 where it is good.
 MIN_WALK_M = 0.4  # A way that is shorter is none: one turns round on the spot.
 
@@ -136,7 +138,7 @@ def plan_tour(
     Raises:
         UsageError: If the volume has no place for a player to stand.
     """
-    volume = _with_headroom(volume)
+    volume = _without_rim(_with_headroom(volume))
     hiding = view_blockers_of(volume)
     ways = WalkRoutes(volume, hiding)
     if not len(ways.feet):
@@ -154,7 +156,7 @@ def plan_tour(
         eyes, yaws_deg = np.repeat(eyes[:1], 73, axis=0), yaws_deg[0] + np.arange(73) * 5.0
         worth = np.ones(73)
     times = _times_s(eyes / hiding.blocks_per_metre, yaws_deg)
-    columns = np.column_stack([eyes, yaws_deg, _pitches_deg(eyes)])
+    columns = np.column_stack([eyes, yaws_deg, _pitches_deg(eyes, hiding)])
     moments = _moments_s(times, worth, frames, rate_hz)
     rows = np.column_stack([np.interp(moments, times, column) for column in columns.T])
     if frames is None:  # A long walk is shown faster.
@@ -201,6 +203,20 @@ def _with_headroom(volume: BlockVolume) -> BlockVolume:
         semantic=np.pad(volume.semantic, above),
         instance=np.pad(volume.instance, above),
     )
+
+
+def _without_rim(volume: BlockVolume) -> BlockVolume:
+    """Return the volume without the invisible barriers that keep players from falling off it.
+
+    A barrier with none above or below it stays, because it can close a hole in the floor.
+    """
+    names = [state.partition("[")[0] for state in volume.palette]
+    barriers = [n for n, name in enumerate(names) if name == "minecraft:barrier"]
+    held = np.isin(volume.states, barriers) & (volume.semantic == 0)
+    padded = np.pad(held, ((0, 0), (1, 1), (0, 0)))
+    states = volume.states.copy()
+    states[held & (padded[:, 2:] | padded[:, :-2])] = len(volume.palette)
+    return replace(volume, states=states, palette=(*volume.palette, AIR))
 
 
 def _sampled(points: np.ndarray, spacing: float) -> np.ndarray:
@@ -250,11 +266,16 @@ def _yaws_deg(
     return gaussian_filter1d(yaws_deg, TURN_SMOOTH_M / SAMPLE_M, mode="nearest"), worth
 
 
-def _pitches_deg(eyes: np.ndarray) -> np.ndarray:
-    """Return a look slightly down, more where the way climbs down and less where it climbs."""
+def _pitches_deg(eyes: np.ndarray, hiding: ViewBlockers) -> np.ndarray:
+    """Return a look slightly down, more where the way climbs down and less where it climbs.
+
+    A tour without a ceiling looks lower, so that the sky does not fill the picture.
+    """
+    upward = cast_view_rays(hiding, eyes, np.arange(0.0, 360.0, 30.0), np.array([UPWARD_DEG]))
+    level_deg = OPEN_PITCH_DEG if (upward.cell < 0).mean() > OPEN_SHARE else PITCH_DEG
     going = gaussian_filter1d(np.gradient(eyes, axis=0), 4, axis=0, mode="nearest")
     slope = np.degrees(np.arctan2(-going[:, 1], np.hypot(going[:, 0], going[:, 2]) + 1e-9))
-    return np.clip(PITCH_DEG + 0.4 * slope, -15, 35)
+    return np.clip(level_deg + 0.4 * slope, -15, 35)
 
 
 def _times_s(eyes_m: np.ndarray, yaws_deg: np.ndarray) -> np.ndarray:
