@@ -22,6 +22,8 @@ from build_samples import (
     l_room,
     placement,
 )
+from hypothesis import given
+from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
 from world2minecraft.core.coordinates import apply, invert, turn_grid
@@ -151,6 +153,34 @@ def test_openings_stay_open_and_windows_are_glass():
     assert volume.palette[volume.states[window]] == (
         "minecraft:glass_pane[east=true,north=false,south=false,waterlogged=false,west=true]"
     )
+
+
+@st.composite
+def windows(draw):
+    """A part of a wall of the sketch, which is not narrower than 3 cells."""
+    axis, far = draw(st.sampled_from([0, 1])), draw(st.booleans())
+    size = Sketch().size
+    spans = []
+    for length in (size[1 - axis], size[2]):
+        start = draw(st.integers(0, length - 3))
+        spans.append((start, draw(st.integers(start + 3, length))))
+    depth = (size[axis], size[axis] + 1) if far else (-1, 0)
+    return [depth, *spans] if axis == 0 else [spans[0], depth, spans[1]]
+
+
+@given(windows(), st.sampled_from([1.0, 2.0, 4.0, 12.5]))
+def test_rectangular_windows_are_rectangles_of_glass(window, scale):
+    x, y, z = window
+    sketch = Sketch().put(x, y, z, WINDOW, (180, 200, 210))
+    volume = build(sketch, scale, parameters=BARE)
+    glass = volume.semantic == WINDOW
+    names = {volume.palette[state].partition("[")[0] for state in np.unique(volume.states[glass])}
+    assert names <= {"minecraft:glass", "minecraft:glass_pane"}
+    width = sorted(end - start for start, end in window)[1] * VOXEL_M * scale
+    places = np.argwhere(glass)
+    assert len(places) or width <= 1
+    if len(places):
+        assert len(places) == np.prod(np.ptp(places, axis=0) + 1)
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0, 4.0, 12.5])

@@ -18,8 +18,10 @@ from world2minecraft.construction.block_lattice import (
 from world2minecraft.construction.doorways import open_doorways
 from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.construction.structure_faces import (
+    EVEN,
     blocks_behind,
     find_faces,
+    majority,
     see_through,
     straighten,
     vote,
@@ -385,21 +387,16 @@ def _floor(grid, footprint, walls, lattice, storey, open_floor, floor, coloured)
 
 def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
     """Return the wall blocks in which the votes for window exceed those for wall."""
-    shape = lattice.shape
-    area = {WALL: np.zeros(shape, np.float32), WINDOW: np.zeros(shape, np.float32)}
+    lead = np.zeros(lattice.shape, np.float32)
     if not (grid.labels == WINDOW).any():
-        return np.zeros(shape, bool)
+        return np.zeros(lattice.shape, bool)
     solid = (grid.labels == WALL) | (grid.labels == WINDOW)
     for axis in (0, 1):
         for faces in find_faces(grid, solid, free, lattice, axis):
             straight = straighten(faces, grid.voxel_m, parameters)
-            kinds = grid.labels[tuple(straight.cells.T)]
-            for kind in area:
-                chosen = straight._replace(
-                    cells=straight.cells[kinds == kind], planes=straight.planes[kinds == kind]
-                )
-                area[kind] += vote(chosen, grid, lattice).area
-    return walls & (area[WINDOW] > area[WALL])
+            glazed = grid.labels[tuple(straight.cells.T)] == WINDOW
+            lead += majority(straight, glazed, grid, lattice)
+    return walls & (lead > EVEN)
 
 
 def _grow_patches(patches: np.ndarray, walls: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from world2minecraft.construction.parameters import BuildParameters
 from world2minecraft.core.types import OccupancyGrid
 
 MIN_WIDTH_M = 0.24  # Narrower than this, structure is noise or the end of a wall. A guess.
+EVEN = 1e-6  # Of a block; a smaller lead is a rounding error.
 
 
 class Faces(NamedTuple):
@@ -124,6 +125,35 @@ def straighten(faces: Faces, voxel_m: float, parameters: BuildParameters) -> Fac
 
 def vote(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> Votes:
     """Sum the area of the faces in front of each block; a face belongs to the block behind it."""
+    target, flat = _flatten(faces, 1, grid, lattice)
+    for position, weights in enumerate(_cover_across(faces, grid, lattice), 1):
+        flat = weighted_sum(weights, flat, position)
+    return Votes(np.moveaxis(flat, 0, faces.axis), target, faces.cells, faces.axis)
+
+
+def majority(faces: Faces, chosen: np.ndarray, grid: OccupancyGrid, lattice: Lattice) -> np.ndarray:
+    """Return the lead of the chosen faces in front of each block, float32 [X, Y, Z].
+
+    The faces decide row by row, and then the rows decide. A rectangle thus remains a rectangle. By
+    area, it would lose a corner block of which it covers 0.6 along both sides, and thus 0.36.
+
+    Args:
+        faces: Faces of the structure.
+        chosen: Bool [N] mask of the faces.
+        grid: Grid of the room.
+        lattice: Block lattice of the room.
+    """
+    _, flat = _flatten(faces, np.where(chosen, 1, -1), grid, lattice)
+    along, up = _cover_across(faces, grid, lattice)
+    lead, area = weighted_sum(along, flat, 1), weighted_sum(along, np.abs(flat), 1)
+    rows = np.where(lead > EVEN, area, -area)
+    return np.moveaxis(weighted_sum(up, rows, 2), 0, faces.axis)
+
+
+def _flatten(
+    faces: Faces, values: np.ndarray | int, grid: OccupancyGrid, lattice: Lattice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the target layer of each face, and the faces' values in those layers of cells."""
     count = lattice.shape[faces.axis]
     if faces.side == 0:
         target = np.floor(faces.planes).astype(np.intp)
@@ -133,11 +163,17 @@ def vote(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> Votes:
     target = np.clip(target, 0, count - 1)
     across = [axis for axis in range(3) if axis != faces.axis]
     flat = np.zeros([count, *(grid.shape[axis] for axis in across)], np.float32)
-    flat[(target, *(faces.cells[:, axis] for axis in across))] = 1
-    for position, axis in enumerate(across, 1):
-        weights = overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis])
-        flat = weighted_sum(weights, flat, position)
-    return Votes(np.moveaxis(flat, 0, faces.axis), target, faces.cells, faces.axis)
+    flat[(target, *(faces.cells[:, axis] for axis in across))] = values
+    return target, flat
+
+
+def _cover_across(faces: Faces, grid: OccupancyGrid, lattice: Lattice) -> list[np.ndarray]:
+    """Return the overlap weights along the two axes across the faces."""
+    return [
+        overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis])
+        for axis in range(3)
+        if axis != faces.axis
+    ]
 
 
 def see_through(
@@ -150,14 +186,12 @@ def see_through(
     not.
     """
     edges = lattice.edges_of(grid, faces.axis)
-    across = [axis for axis in range(3) if axis != faces.axis]
     result = np.full(lattice.shape, -1, np.float32)
     planes, first = np.unique(faces.planes, return_index=True)
     for plane, target in zip(planes, votes.target[first], strict=True):
         layer = int(np.searchsorted(edges, plane - 1e-6 * faces.side, "right")) - 1
         share = np.take(free, np.clip(layer, 0, len(edges) - 2), faces.axis).astype(np.float32)
-        for position, axis in enumerate(across):
-            weights = overlap_weights(lattice.edges_of(grid, axis), lattice.shape[axis])
+        for position, weights in enumerate(_cover_across(faces, grid, lattice)):
             share = weighted_sum(weights, share, position)
         sheet = np.moveaxis(result, faces.axis, 0)[target]
         np.maximum(sheet, share, out=sheet)
