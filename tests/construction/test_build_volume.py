@@ -26,6 +26,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from world2minecraft.construction import BuildParameters, build_volume
+from world2minecraft.construction.shell_geometry import without_ragged_edges
 from world2minecraft.core.coordinates import apply, invert, turn_grid
 from world2minecraft.core.errors import UnknownNameError, UsageError
 from world2minecraft.minecraft.block_states import check_state, complete, parse_state
@@ -181,6 +182,19 @@ def test_rectangular_windows_are_rectangles_of_glass(window, scale):
     assert len(places) or width <= 1
     if len(places):
         assert len(places) == np.prod(np.ptp(places, axis=0) + 1)
+
+
+def test_ragged_rows_at_the_edges_of_windows_are_wall():
+    window = np.zeros((8, 1, 6), bool)
+    window[1:7, 0, 1:5] = True
+    ragged = window.copy()
+    ragged[[1, 2, 6], 0, 5] = True  # Three of six blocks.
+    ragged[0, 0, 3] = True
+    assert np.array_equal(without_ragged_edges(ragged), window)
+    assert np.array_equal(without_ragged_edges(window), window)
+    two = np.zeros((8, 1, 6), bool)
+    two[1:4, 0, 2], two[1, 0, 3] = True, True
+    assert np.array_equal(without_ragged_edges(two), two), "too small to have edges"
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0, 4.0, 12.5])

@@ -8,6 +8,7 @@ heights at which they were seen, and closed above their rooms.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import find_objects
 
 from world2minecraft.construction.block_lattice import (
     Lattice,
@@ -396,7 +397,25 @@ def _windows(grid, walls, free, lattice, parameters) -> np.ndarray:
             straight = straighten(faces, grid.voxel_m, parameters)
             glazed = grid.labels[tuple(straight.cells.T)] == WINDOW
             lead += majority(straight, glazed, grid, lattice)
-    return walls & (lead > EVEN)
+    return without_ragged_edges(walls & (lead > EVEN))
+
+
+def without_ragged_edges(windows: np.ndarray) -> np.ndarray:
+    """Return windows, bool [X, Y, Z], without outermost rows of at most half of the next row.
+
+    The labels at the edges of a window are uncertain. Windows of fewer than three rows stay.
+    """
+    result = windows.copy()
+    parts, _ = label_face_components(windows)
+    for number, box in enumerate(find_objects(parts), start=1):
+        part = parts[box] == number
+        for axis in range(3):
+            rows = np.moveaxis(part, axis, 0)
+            sizes = rows.sum(axis=(1, 2))
+            for edge, inner in ((0, 1), (-1, -2)):
+                if len(sizes) >= 3 and 2 * sizes[edge] <= sizes[inner]:
+                    np.moveaxis(result[box], axis, 0)[edge][rows[edge]] = False
+    return result
 
 
 def _grow_patches(patches: np.ndarray, walls: np.ndarray) -> np.ndarray:
