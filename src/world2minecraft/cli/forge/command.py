@@ -205,7 +205,7 @@ def _print_link(session: "EditorSession") -> None:
     print(f"SceneForge: {session.link}", flush=True)
     if session.phone_link:
         _print_phone(session)
-    print("Press Ctrl+C to stop; every edit is saved.", flush=True)
+    print("Press Ctrl+C to stop; every edit is recorded, and Save writes the room.", flush=True)
 
 
 def _print_phone(session: "EditorSession") -> None:
