@@ -197,6 +197,17 @@ def test_ragged_rows_at_the_edges_of_windows_are_wall():
     assert np.array_equal(without_ragged_edges(two), two), "too small to have edges"
 
 
+def test_walls_have_no_specks_of_furniture_standing_elsewhere():
+    cabinet = Sketch().put((20, 30), (8, 16), (0, 8), FURN, RED, instance=1)
+    centre, size = np.array([25, 12, 4]) * VOXEL_M, np.array([10, 8, 8]) * VOXEL_M
+    placed = [placement("cabinet", FURN, centre, size)]
+    alone = build(cabinet, placements=placed, parameters=BARE)
+    cabinet.put((-1, 0), (11, 17), (11, 14), FURN, RED, instance=1)
+    volume = build(cabinet, placements=placed, parameters=BARE)
+    assert (alone.instance == 1).any()
+    assert np.array_equal(volume.instance == 1, alone.instance == 1)
+
+
 @pytest.mark.parametrize("scale", [1.0, 2.0, 4.0, 12.5])
 def test_every_state_is_complete_and_stands_by_itself(scale):
     volume = build(furnished(), scale)

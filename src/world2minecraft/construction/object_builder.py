@@ -306,10 +306,15 @@ class ObjectBuilder:
         return class_id in WALL_MOUNTED and not under.any()
 
     def _put_design(self, design: Design, samples: ColourSamples, thing: ObjectLabel) -> None:
-        """Place a design made from cells; one that is flush with a wall replaces wall blocks."""
+        """Place a design made from cells; one that is flush with a wall replaces wall blocks.
+
+        The rest of an object that stands elsewhere is not placed there: its labels are wrong.
+        """
         window = self._window(design)
         filled = design.filled[window.box]
         if window.is_flush(filled):
+            if thing.instance and (self.canvas.instance == thing.instance).any():
+                return
             numbers = np.where(filled & window.wall, 1, design.numbers[window.box] * window.free)
         else:
             # Crumbs of furniture stay where they are.
