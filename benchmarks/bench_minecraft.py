@@ -2,11 +2,9 @@
 
 The region has 4.2 million cells, of which 1.75 million are not air. mcschematic and anvil-parser2
 process all of it. nbtlib and litemapy hold one object per block and process a part; rates are
-compared. amulet-core translates what it reads to universal block states. litemapy and amulet-core
-take part where they are installed (see ``rivals_minecraft``).
+compared. litemapy takes part where it is installed (see ``rivals_minecraft``).
 """
 
-import shutil
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -63,12 +61,6 @@ def _worlds(region: BlockVolume, folder: Path) -> Iterator[Row]:
     ours = lambda: read_world(folder / "w", box=box)  # noqa: E731
     yield _row("Anvil read", region, ours, rival, READ_BUDGET)
     yield _row("Anvil read, 1.15", region, lambda: read_world(folder / "o", box=box), rival)
-    if rivals.HAS_AMULET:
-        rival = ("amulet-core", _rate(region, lambda: rivals.amulet_read(folder / "w")))
-        yield _row("Anvil read", region, ours, rival)
-        copy = shutil.copytree(folder / "w", folder / "amulet")
-        rival = ("amulet-core, read too", _rate(region, lambda: rivals.amulet_write(copy)))
-        yield _row("Anvil write", region, lambda: write(region, folder / "w"), rival)
 
 
 def _schematics(region: BlockVolume, part: BlockVolume, folder: Path) -> Iterator[Row]:

@@ -1,9 +1,8 @@
 """The public Python packages that write and read blocks, as rivals of ``bench_minecraft``.
 
 Each is used block by block, as its documentation shows; none of them has another interface.
-litemapy and amulet-core are not development packages. They take part where they can be imported:
-``pip install --target FOLDER litemapy amulet-core`` (amulet-core needs a C++ compiler), and FOLDER
-in ``PYTHONPATH``.
+litemapy is not a development package. It takes part where it can be imported: ``pip install
+--no-deps --target FOLDER litemapy``, and FOLDER in ``PYTHONPATH``.
 """
 
 from importlib.util import find_spec
@@ -18,8 +17,7 @@ from nbtlib import tag
 from world2minecraft.core.types import BlockVolume
 from world2minecraft.minecraft.block_states import parse_state
 
-HAS_LITEMAPY, HAS_AMULET = find_spec("litemapy") is not None, find_spec("amulet") is not None
-OVERWORLD = "minecraft:overworld"
+HAS_LITEMAPY = find_spec("litemapy") is not None
 
 
 def blocks_of(volume: BlockVolume) -> list[tuple[tuple[int, int, int], str]]:
@@ -167,29 +165,3 @@ def litemapy_read(path: Path) -> int:
 
     (region,) = litemapy.Schematic.load(str(path)).regions.values()
     return sum(region[place].id != "minecraft:air" for place in region.block_positions())
-
-
-def amulet_read(folder: Path) -> int:
-    """Translate all chunks to amulet's universal block states."""
-    import amulet
-
-    level = amulet.load_level(str(folder))
-    try:
-        chunks = [level.get_chunk(x, z, OVERWORLD) for x, z in level.all_chunk_coords(OVERWORLD)]
-        blocks = [chunk.blocks for chunk in chunks]
-        return sum(int(one.get_sub_chunk(y).any()) for one in blocks for y in one.sub_chunks)
-    finally:
-        level.close()
-
-
-def amulet_write(folder: Path) -> None:
-    """Save all chunks of a world that has been read; the time contains the reading."""
-    import amulet
-
-    level = amulet.load_level(str(folder))
-    try:
-        for x, z in level.all_chunk_coords(OVERWORLD):
-            level.get_chunk(x, z, OVERWORLD).changed = True
-        level.save()
-    finally:
-        level.close()
