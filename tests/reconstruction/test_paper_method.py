@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from world2minecraft.reconstruction.file_stages import FILE_STAGES
 from world2minecraft.reconstruction.parameters import Parameters, with_method
 from world2minecraft.reconstruction.pipeline import reconstruct
 
@@ -45,7 +46,8 @@ def out(dining_scan, tmp_path_factory) -> Path:
     aligned.write_text(json.dumps(json.loads(aligned.read_text()) | ALIGNMENT))
     reconstruct(capture, out, paper, start="fuse", until="label")
     shutil.copy(ROOM, out / "room.npz")
-    reconstruct(capture, out, paper, start="find")
+    for stage in ("find", "furnish"):
+        FILE_STAGES[stage](out, paper)
     return out
 
 
