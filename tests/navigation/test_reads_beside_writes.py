@@ -1,4 +1,4 @@
-"""Readers beside a command that writes: 20 reads of each kind of folder, and never a mixture."""
+"""Readers beside a command that writes: 50 reads of each kind of folder, and never a mixture."""
 
 import hashlib
 import shutil
@@ -18,7 +18,7 @@ from world2minecraft.minecraftocc.store import open_store
 from world2minecraft.navigation.data.rewording import read_set
 from world2minecraft.procgen import scan_room
 
-READS = 20
+READS = 50
 BEGIN = """
 import shutil, sys, threading
 from pathlib import Path
@@ -70,7 +70,7 @@ def start(kind, one, other, out):
 
 
 def states_beside(process, read):
-    """The states that 20 reads find beside a writer; None stands for an error."""
+    """The states that 50 reads find beside a writer; None stands for an error."""
     found = set()
     for _ in range(READS):
         try:

@@ -128,7 +128,7 @@ def test_later_stages_use_the_recorded_alignment(out, capture, tmp_path, monkeyp
     before = digests(out)
     monkeypatch.setattr(sys.modules["world2minecraft.capture.open_scan"], "align", None)
     words = ["reconstruct", str(capture), "--out", str(tmp_path / "again"), "--from"]
-    for stage in ("find", "furnish"):
+    for stage in ("label", "find", "furnish", "report"):
         assert w2m([*words, stage]) == 0
         assert digests(tmp_path / "again") == before
 

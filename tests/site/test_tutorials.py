@@ -28,7 +28,7 @@ NEEDS = {
 OTHERS = {"index", "first-five-minutes"}  # Tested elsewhere, or without commands.
 PAGES = sorted({path.stem for path in DOCS.glob("*.md")} - OTHERS)
 OF_0_1 = Path(__file__).parent / "docs_of_0_1"
-CHANGED = ["edit"]  # Since version 0.1; tests of deprecated names cover the agent page.
+CHANGED = ["agent", "edit"]  # Since version 0.1.
 SERVER = "localhost:25575"
 
 

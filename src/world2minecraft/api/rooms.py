@@ -220,7 +220,7 @@ def _reconstruct_frames(
 def _check_replaced(capture: Path, out: Path, start: str | None, force: bool) -> None:
     """Check that no finished run of another capture and no saved edits are lost without ``force``.
 
-    Forced, the copy of another capture in the output folder is removed, as nothing of it remains.
+    With ``force``, a copy of the other capture in the output folder is removed too.
 
     Raises:
         UsageError: If something would be lost.

@@ -308,7 +308,7 @@ class ObjectBuilder:
     def _put_design(self, design: Design, samples: ColourSamples, thing: ObjectLabel) -> None:
         """Place a design made from cells; one that is flush with a wall replaces wall blocks.
 
-        The rest of an object that stands elsewhere is not placed there: its labels are wrong.
+        Wall cells with the label of an object that already stands elsewhere are not placed.
         """
         window = self._window(design)
         filled = design.filled[window.box]
