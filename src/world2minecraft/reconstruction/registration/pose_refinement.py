@@ -22,9 +22,9 @@ from world2minecraft.reconstruction.registration.gauss_newton import (
     UNKNOWNS,
     Observations,
     Step,
+    jacobian_rows,
     move_patches,
     solve,
-    surfel_means,
 )
 from world2minecraft.reconstruction.registration.parameters import RegistrationParameters
 from world2minecraft.reconstruction.registration.patch_correspondences import Surfels, find_surfels
@@ -48,7 +48,7 @@ HELD_BLOCK_M = 0.4  # Whole blocks of surface are held out, because neighbours a
 MUST_FALL = 0.97  # Maximum ratio of the held-out misfits after and before; less gain is chance.
 CLEAR_SPREAD = 0.02  # Scales with a smaller spread must be confirmed by held-out surface.
 CLOSER_PASSES = 2  # With the depth left alone, poses are at most millimetres from their best.
-MAX_PATCHES = 1_200_000  # For all frames together; takes about 700 MB.
+MAX_PATCHES = 600_000  # For all frames together; more moved no pose of 600 frames by 0.1 mm.
 MIN_PATCHES_PER_FRAME = 200
 MIN_JUDGES = 50
 DECIMALS = 9
@@ -120,9 +120,14 @@ def surfels_of(surface: OrientedPoints, cell_m: float, gap_m: float) -> Surfels:
 
 
 def shared(surface: OrientedPoints, surfels: Surfels, chosen: np.ndarray) -> np.ndarray:
-    """Return the indices of the chosen patches on shared surfels with a similar normal."""
-    facing = np.einsum("ia,ia->i", surface.normals, surfels.normals[surfels.owner])
-    return np.flatnonzero(chosen & (surfels.frames[surfels.owner] > 1) & (facing > SAME_WAY))
+    """Return the indices of the chosen patches on shared surfels with a similar normal.
+
+    They are sorted by surfel, then by frame.
+    """
+    owner = surfels.owner
+    facing = np.einsum("ia,ia->i", surface.normals, surfels.normals[owner])
+    is_shared = chosen & (surfels.frames[owner] > 1) & (facing > SAME_WAY)
+    return surfels.order[is_shared[surfels.order]]
 
 
 def observe(
@@ -132,18 +137,12 @@ def observe(
     surfels = surfels_of(surface, cell_m, gap_m)
     index = shared(surface, surfels, speaks)
     surfel, frame = surfels.owner[index], surface.owner[index]
-    normal = surfels.normals[surfel]
-    from_eye = surface.points_m[index] - surface.cameras[frame, :3, 3]
-    residual = np.einsum("ia,ia->i", normal, surface.points_m[index] - surfels.centers_m[surfel])
     weight = 1 / (surface.sigma_m[index] ** 2 + noise_m**2)
-    count = len(surfels.frames)
-    means = surfel_means(residual, weight, surfel, count)
-    stretch = np.einsum("ia,ia->i", normal, from_eye)
-    # Residuals shrink with the whole room, so that plain least squares would shrink it. Measured
-    # in units of their frame's depth they do not; hence the second term.
-    stretch -= residual - means[surfel]
-    rows = np.column_stack([np.cross(from_eye, normal), normal, stretch])
-    return Observations(rows, residual, weight, frame, surfel, len(surface.cameras), count)
+    rows, residual = jacobian_rows(
+        surface.points_m, surface.cameras, frame, surfel, index, weight,
+        surfels.centers_m, surfels.normals,
+    )  # fmt: skip
+    return Observations(rows, residual, weight, frame, surfel, len(surface.cameras))
 
 
 def _stepped(state: State, step: Step) -> State:
@@ -286,7 +285,8 @@ def _misfit_m(
     off = judges.points_m[index] - surfels.centers_m[owner]
     along = np.einsum("ia,ia->i", surfels.normals[owner], off)
     weight = 1 / (judges.sigma_m[index] ** 2 + 0.002**2)
-    means = surfel_means(along, weight, owner, len(surfels.frames))
+    mass = np.bincount(owner, weight, len(surfels.frames))
+    means = np.bincount(owner, weight * along, len(surfels.frames)) / np.maximum(mass, 1e-12)
     return float(np.median(np.abs(along - means[owner])))
 
 
