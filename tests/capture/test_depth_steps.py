@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from world2minecraft.capture.depth_steps import depth_step_m, smooth_depth_steps
+from world2minecraft.capture.depth_steps import _links, depth_step_m, smooth_depth_steps
 from world2minecraft.core.types import Camera
 from world2minecraft.geometry.planar_patches import extract_patches
 
@@ -51,3 +53,29 @@ def test_steps_are_found_only_where_they_are_coarse() -> None:
     assert depth_step_m(exact.astype(np.float32)) == 0
     assert depth_step_m(np.zeros((10, 10), np.float32)) == 0
     assert depth_step_m(np.array([[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]], np.float32)) == 0
+
+
+@given(st.integers(0, 10**6), st.floats(0.5, 3))
+def test_pixels_are_linked_up_to_edges_and_holes(seed, edge_m):
+    stored = np.random.default_rng(seed).integers(0, 5, (5, 6)).astype(np.float64)
+    links = _links(stored, edge_m)
+
+    def joined(one, other):
+        inside = all(0 <= at < size for at, size in zip(other, stored.shape, strict=True))
+        return (
+            inside
+            and stored[one] > 0
+            and stored[other] > 0
+            and abs(stored[one] - stored[other]) <= edge_m
+        )
+
+    for i, j in np.ndindex(stored.shape):
+        expected = 0
+        for axis, (down, right) in enumerate([(1, 0), (0, 1)]):
+            for way, near, far in ((-1, 1, 0), (1, 2, 3)):
+                middle = (i + way * down, j + way * right)
+                if joined((i, j), middle):
+                    expected |= 1 << (4 * axis + near)
+                    if joined(middle, (i + 2 * way * down, j + 2 * way * right)):
+                        expected |= 1 << (4 * axis + far)
+        assert links[i, j] == expected

@@ -66,7 +66,7 @@ def smooth_depth_steps(depth_m: np.ndarray, step_m: float) -> np.ndarray:
             inverse = (low + high) / 2
         else:
             inverse = _refined(inverse, stored, low, high, edge_m)
-        _relax(inverse, stored, low, high, edge_m, SWEEPS << level)
+        _relax(inverse, _links(stored, edge_m), low, high, SWEEPS << level)
     with np.errstate(divide="ignore"):
         return np.where(seen, 1 / inverse, 0.0).astype(np.float32)
 
@@ -93,49 +93,66 @@ def _refined(coarse, stored, low, high, edge_m):
 
 
 @njit
-def _relax(inverse, stored, low, high, edge_m, sweeps):
-    """Reduce the curvature of inverse depth in place, within bounds, not across edges."""
+def _links(stored, edge_m):
+    """Return, for each pixel, a bit for each neighbour that is on the same surface, uint8 [H, W].
+
+    Bits 0 to 3 stand for the rows -2, -1, 1 and 2 from the pixel, bits 4 to 7 for the columns. Two
+    pixels away counts if the pixel between is linked and no edge is after it.
+    """
+    height, width = stored.shape
+    links = np.zeros((height, width), np.uint8)
+    for i in range(height):
+        for j in range(width):
+            if stored[i, j] <= 0:
+                continue
+            for axis in range(2):
+                for side in range(2):
+                    way = 2 * side - 1
+                    y, x = i + way * (1 - axis), j + way * axis
+                    if not (0 <= y < height and 0 <= x < width) or stored[y, x] <= 0:
+                        continue
+                    if abs(stored[y, x] - stored[i, j]) > edge_m:
+                        continue
+                    links[i, j] |= 1 << (4 * axis + 1 + side)
+                    y2, x2 = y + way * (1 - axis), x + way * axis
+                    if not (0 <= y2 < height and 0 <= x2 < width) or stored[y2, x2] <= 0:
+                        continue
+                    if abs(stored[y2, x2] - stored[y, x]) <= edge_m:
+                        links[i, j] |= 1 << (4 * axis + 3 * side)
+    return links
+
+
+@njit
+def _relax(inverse, links, low, high, sweeps):
+    """Reduce the curvature of inverse depth in place, within bounds, along ``_links``."""
     height, width = inverse.shape
-    around = np.zeros(5)
-    linked = np.zeros(5, np.bool_)
     for sweep in range(sweeps):
         for n in range(height):
             i = n if sweep % 2 == 0 else height - 1 - n
             for m in range(width):
                 j = m if sweep % 2 == 0 else width - 1 - m
-                if stored[i, j] <= 0:
+                linked = links[i, j]
+                if linked == 0:
                     continue
                 total, weight = 0.0, 0.0
                 for axis in range(2):
-                    for k in range(5):
-                        y = i + (k - 2 if axis == 0 else 0)
-                        x = j + (k - 2 if axis == 1 else 0)
-                        linked[k] = 0 <= y < height and 0 <= x < width and stored[y, x] > 0
-                        around[k] = 0.0
-                        if linked[k]:
-                            around[k] = inverse[y, x]
-                    for k in (1, 3):
-                        y = i + (k - 2 if axis == 0 else 0)
-                        x = j + (k - 2 if axis == 1 else 0)
-                        if linked[k] and abs(stored[y, x] - stored[i, j]) > edge_m:
-                            linked[k] = False
-                        y2, x2 = i + 2 * (y - i), j + 2 * (x - j)
-                        far = 0 if k == 1 else 4
-                        linked[far] &= linked[k]
-                        if linked[far] and abs(stored[y2, x2] - stored[y, x]) > edge_m:
-                            linked[far] = False
-                    if linked[1] and linked[3]:
-                        total += 2 * (around[1] + around[3])
+                    down, right = 1 - axis, axis
+                    bits = linked >> (4 * axis)
+                    before = inverse[i - down, j - right] if bits & 2 else 0.0
+                    after = inverse[i + down, j + right] if bits & 4 else 0.0
+                    if bits & 6 == 6:
+                        total += 2 * (before + after)
                         weight += 4
-                    if linked[0]:
-                        total += 2 * around[1] - around[0]
+                    if bits & 1:
+                        total += 2 * before - inverse[i - 2 * down, j - 2 * right]
                         weight += 1
-                    if linked[4]:
-                        total += 2 * around[3] - around[4]
+                    if bits & 8:
+                        total += 2 * after - inverse[i + 2 * down, j + 2 * right]
                         weight += 1
-                    for k in (1, 3):
-                        if linked[k]:
-                            total += STIFFNESS * around[k]
-                            weight += STIFFNESS
-                if weight > 0:
-                    inverse[i, j] = min(max(total / weight, low[i, j]), high[i, j])
+                    if bits & 2:
+                        total += STIFFNESS * before
+                        weight += STIFFNESS
+                    if bits & 4:
+                        total += STIFFNESS * after
+                        weight += STIFFNESS
+                inverse[i, j] = min(max(total / weight, low[i, j]), high[i, j])
