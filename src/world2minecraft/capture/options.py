@@ -22,8 +22,8 @@ class ScanOptions:
 
     depth_unit: str | None = None
     """Depth unit: mm, 5000, rotated, m, nyu_raw or metres per unit. Default: stated or inferred."""
-    every: int = 1
-    """Use every n-th frame; neighbouring frames of a video add little information."""
+    every: int | None = None
+    """Use every n-th frame. Default: all, less those of a long recording that show the same."""
     colour_camera: str = "auto"
     """auto: estimate the colour camera if depth and colour share one matrix; stated: do not."""
     unit: str | None = None
@@ -52,8 +52,8 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
     for name in options:
         if name not in OPTION_NAMES:
             raise UnknownNameError("scan option", name, OPTION_NAMES)
-    every = options.get("every", "1")
-    if not every.isascii() or not every.isdigit() or not 0 < int(every) < 10**6:
+    every = options.get("every")
+    if every is not None and not (every.isascii() and every.isdigit() and 0 < int(every) < 10**6):
         raise UsageError(f"capture.every must be a positive integer, got {every!r}")
     colour_camera = options.get("colour_camera", "auto")
     if colour_camera not in ("auto", "stated"):
@@ -63,7 +63,7 @@ def parse_options(options: Mapping[str, str]) -> ScanOptions:
         DepthEncoding(unit)
     return ScanOptions(
         unit,
-        int(every),
+        None if every is None else int(every),
         colour_camera,
         _choice("unit", options.get("unit"), tuple(MESH_UNITS_M)),
         _choice("up", options.get("up"), UP_AXES),

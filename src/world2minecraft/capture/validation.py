@@ -36,6 +36,7 @@ from world2minecraft.capture.label_images import attach_labels, check_labels
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.pose_validation import check_camera_spread, is_lost, repair_pose
 from world2minecraft.capture.source_types import Capture, FrameFiles
+from world2minecraft.capture.view_selection import select_views
 from world2minecraft.core.errors import (
     CaptureError,
     DamagedFileError,
@@ -286,8 +287,8 @@ def validate(
         CaptureError: If the capture cannot be used.
         LimitError: If an image is too large.
     """
-    total = len(capture.frames[:: options.every])
-    capture = replace(capture, frames=capture.frames[:: options.every])
+    capture = replace(capture, frames=capture.frames[:: options.every or 1])
+    total = len(capture.frames)
     frames, skipped = check_frames(capture, lambda done: step(done, total))
     if labels is not None:
         frames = attach_labels(frames, labels)
@@ -301,6 +302,14 @@ def validate(
     if is_posed(frames) and capture.scale != "unknown":
         frames, strayed = check_camera_spread(frames, capture.folder, typical_m)
     notes = [*capture.notes, *turned]
+    if options.every is None and sampled and is_posed(frames) and capture.scale != "unknown":
+        selected = select_views(frames)
+        if len(selected) < len(frames):
+            notes.append(
+                f"{len(selected)} of {len(frames)} frames are used; the others show the same from "
+                "the same places (--set capture.every=1 uses all)"
+            )
+        frames = selected
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.description}, inferred from its values")
     return ValidatedCapture(

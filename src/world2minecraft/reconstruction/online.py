@@ -212,7 +212,7 @@ class Follower:
     def __init__(self, capture: Path, chosen: Parameters, labels: Path | None = None):
         self.capture, self.labels = capture, labels
         self.live = LiveMap(chosen)
-        self._every = parse_options(chosen.capture).every
+        self._every = parse_options(chosen.capture).every or 1
         self._read: set[str] = set()
 
     def poll(self) -> int:
