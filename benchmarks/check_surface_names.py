@@ -1,6 +1,6 @@
 """Names of the labelled surface of real frames: of objects, of votes, and of the segmenter.
 
-``python -m benchmarks.check_surface_names DATA --keep DIR [--frames 22]``
+``python -m benchmarks.check_surface_names DATA --keep DIR [--frames 22] [--json FILE]``
 
 ``DATA`` is the folder of shared inputs. Validation frames of NYUv2 are reconstructed once. A
 labelled pixel takes the best name of the object in whose cell it lies, or the class of a cell of
@@ -19,6 +19,7 @@ import numpy as np
 from benchmarks.fit_name_confidence import best_names, labelled_surface, run_frame
 from benchmarks.real_captures.scenes import NYU_FOLDER, sample_nyu
 from world2minecraft.core.classes import CLASS_NAMES
+from world2minecraft.core.files import write_json
 from world2minecraft.core.types import UNSEEN, OccupancyGrid
 from world2minecraft.core.vocabulary import OTHER_NYU40, alike_nyu40, read_vocabulary
 from world2minecraft.reconstruction.naming.name_votes import (
@@ -104,12 +105,16 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, required=True, metavar="DIR")
     parser.add_argument("--frames", type=int, default=22)
     parser.add_argument("--alike", action="store_true")
+    parser.add_argument("--json", type=Path, help="write the means to this file")
     chosen = parser.parse_args()
     rows = []
     for number in sample_nyu(chosen.data / NYU_FOLDER, chosen.frames):
         rows.append(frame_shares(chosen.data, chosen.keep, number, alike=chosen.alike))
         print(f"{number:04d}: {told(rows[-1])}", flush=True)
-    print(f"mean: {told(np.mean(rows, axis=0).tolist())}")
+    means = np.mean(rows, axis=0).tolist()
+    print(f"mean: {told(means)}")
+    if chosen.json:
+        write_json(chosen.json, dict(zip(KINDS, means, strict=True)))
 
 
 if __name__ == "__main__":

@@ -52,7 +52,9 @@ def test_every_command_exists(step):
         names = words[3 : words.index("--json")]
         assert words[2] == "--only" and set(names) <= set(bench.names())
     elif program == "python":
-        source = (ROOT / f"{words[1].replace('.', '/')}.py").read_text("utf-8")
+        module = ROOT / words[1].replace(".", "/")
+        main = module / "__main__.py" if module.is_dir() else module.with_suffix(".py")
+        source = main.read_text("utf-8")
         assert not [option for option in options_of(words) if f'"{option}"' not in source]
     else:
         assert program == "git"
