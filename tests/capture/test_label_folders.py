@@ -113,3 +113,17 @@ def test_wrong_names_of_ids_are_refused(names, said, capture):
     (capture / "labels" / "labels.json").write_text(json.dumps({"classes": names}))
     with pytest.raises(CaptureError, match=said):
         labels_of(capture)
+
+
+def test_names_that_are_not_known_are_told(capture):
+    names = {"1": "wall", "2": "zzwall", "5": "toillet", "14": "sky"}
+    (capture / "labels" / "labels.json").write_text(json.dumps({"classes": names}))
+    judged = validate_capture(capture / "cap", ScanOptions(), capture / "labels")
+    assert [note for note in judged.notes if "labels.json" in note] == [
+        "labels.json has names that are not known, whose pixels count as unlabelled: "
+        "toillet (did you mean toilet?), zzwall (did you mean wall?)"
+    ]
+    known = {"classes": {"1": "wall", "14": "sky"}}
+    (capture / "labels" / "labels.json").write_text(json.dumps(known))
+    judged = validate_capture(capture / "cap", ScanOptions(), capture / "labels")
+    assert not [note for note in judged.notes if "labels.json" in note]

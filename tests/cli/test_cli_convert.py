@@ -77,7 +77,7 @@ def test_what_is_there_stays_without_force(schem, volume, tmp_path, capsys):
     (tmp_path / "b.schem").write_bytes(b"mine")
     assert convert(schem, tmp_path / "b.schem") == 2
     assert capsys.readouterr().err == (
-        f"error: {tmp_path / 'b.schem'} exists; pass force (--force) to replace it\n"
+        f"error: {tmp_path / 'b.schem'} exists; use --force to replace it\n"
     )
     assert (tmp_path / "b.schem").read_bytes() == b"mine"
     assert convert(schem, tmp_path / "b.schem", "--force") == 0

@@ -44,7 +44,7 @@ Total operations                     3.00      3.00      1.0x         340.00    
   Deletion actions                   1.00      1.00      1.0x             --      7.60
   Orientation adjustments            0.00      0.00        --          20.70      7.20
   Class changes                      1.00      1.00      1.0x             --        --
-Undone (not in the total)            1.00      1.00      1.0x             --        --
+Undo steps (not counted)             1.00      1.00      1.0x             --        --
 """
 
 

@@ -56,7 +56,7 @@ def test_nothing_is_replaced_unless_it_is_said(own, volume, tmp_path, capsys):
     assert furniture(*words) == 0
     before = (own / "a.json").read_bytes()
     assert furniture(*words) == 2
-    assert "a.json exists; choose another name (--name), or pass force (--force) to replace it" in (
+    assert "a.json exists; choose another name (--name), or use --force to replace it" in (
         capsys.readouterr().err
     )
     assert furniture(*words, "--force") == 0

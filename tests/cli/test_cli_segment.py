@@ -141,8 +141,8 @@ def test_a_folder_with_files_needs_force(photos, halves, tmp_path, capsys):
     (out / "a.png").write_bytes(b"mine")
     assert w2m(["segment", str(photos), "--out", str(out)]) == 2
     line = (
-        f"error: {out} contains other files (a.png); choose another folder, or pass force "
-        "(--force) to replace a.png there\n"
+        f"error: {out} contains other files (a.png); choose another folder, or use --force "
+        "to replace a.png there\n"
     )
     assert capsys.readouterr().err == line
     assert (out / "a.png").read_bytes() == b"mine"

@@ -239,7 +239,7 @@ def test_a_folder_of_somebody_else_is_left_alone(verb, run, images, tmp_path, ca
     error = capsys.readouterr().err
     replaced = "write beside them" if verb == "dataset import" else "replace objects.json, room.npz"
     assert f"error: {folder} contains other files (notes.txt, objects.json, room.npz); " in error
-    assert f"choose another folder, or pass force (--force) to {replaced}" in error
+    assert f"choose another folder, or use --force to {replaced}" in error
     assert contents(folder) == before and not (folder / ".lock").exists()
 
 
@@ -250,7 +250,7 @@ def test_pictures_of_somebody_else_are_left_alone(run, tmp_path, capsys):
     words = ["render", str(run), "--orbit", "--frames", "2", "--size", "64x36", "-o", str(folder)]
     assert cli.run(words) == 2
     error = capsys.readouterr().err
-    assert "contains other files (000000.png); choose another folder, or pass force" in error
+    assert "contains other files (000000.png); choose another folder, or use --force" in error
     assert contents(folder) == {"000000.png": b"mine"}
     assert cli.run([*words, "--force"]) == 0
     assert (folder / "000000.png").read_bytes() != b"mine"

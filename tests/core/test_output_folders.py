@@ -47,17 +47,17 @@ def test_new_and_empty_folders_are_written(tmp_path):
     [
         (
             ["notes.txt", "room.npz"],
-            "contains other files (notes.txt, room.npz); choose another folder, or pass force "
-            "(--force) to replace room.npz there",
+            "contains other files (notes.txt, room.npz); choose another folder, or use --force "
+            "to replace room.npz there",
         ),
         (
             [f"{n}.jpg" for n in range(9)],
             "contains other files (0.jpg, 1.jpg, 2.jpg, 3.jpg and 5 more); choose another folder, "
-            "or pass force (--force) to write beside them",
+            "or use --force to write beside them",
         ),
         (
             ["run.json"],  # Of another program.
-            "contains other files (run.json); choose another folder, or pass force (--force) to "
+            "contains other files (run.json); choose another folder, or use --force to "
             "write beside them",
         ),
     ],

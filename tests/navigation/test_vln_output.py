@@ -124,7 +124,7 @@ def test_results_of_somebody_else_are_left_alone(verb, folder, flat_path, tmp_pa
     words = ["vln", verb, *words, "--out", str(out)]
     assert cli.run(words) == 2
     error = capsys.readouterr().err
-    assert f"contains other files ({own}); choose another folder, or pass force" in error
+    assert f"contains other files ({own}); choose another folder, or use --force" in error
     assert [path.name for path in out.iterdir()] == [own] and (out / own).read_text() == "mine"
     assert cli.run([*words, "--force"]) == 0
     assert (out / own).read_text() != "mine"

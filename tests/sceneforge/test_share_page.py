@@ -247,7 +247,7 @@ FAULTS = [
     ("room.txt", {}, UsageError, "room.txt must end in .html, .gif"),
     ("room.gif", {"photos": 2}, UsageError, "is a film, which contains no photos"),
     ("room.html", {"photos": 99}, UsageError, "photos must be 0 to 24, got 99"),
-    ("taken.html", {}, UsageError, "taken.html exists; pass force (--force) to replace it"),
+    ("taken.html", {}, UsageError, "taken.html exists; use --force to replace it"),
     ("folder.html", {}, UsageError, "folder.html is a folder; give a file such as"),
 ]
 

@@ -229,7 +229,7 @@ def _free_file(name: str, force: bool) -> Path:
     target = user_design_folder() / f"{name}.json"
     if target.exists() and not force:
         raise UsageError(
-            f"{target} exists; choose another name (--name), or pass force (--force) to replace it"
+            f"{target} exists; choose another name (--name), or use --force to replace it"
         )
     return target
 

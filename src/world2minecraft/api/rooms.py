@@ -235,7 +235,7 @@ def _check_replaced(capture: Path, out: Path, start: str | None, force: bool) ->
         if not force:
             raise UsageError(
                 f"{out} contains the reconstruction of another capture, or of this one before its "
-                "files changed; choose another folder, or pass force (--force) to replace it"
+                "files changed; choose another folder, or use --force to replace it"
             )
         copy = out / "capture"
         if copy.is_dir() and not capture.resolve().is_relative_to(copy.resolve()):
@@ -243,7 +243,7 @@ def _check_replaced(capture: Path, out: Path, start: str | None, force: bool) ->
     if start not in ("build", "report") and not force and holds_saved_edits(out):
         raise UsageError(
             f"{out} contains edits saved in SceneForge, which would be lost; choose another "
-            "folder, keep them with start 'build' (--from build), or pass force (--force)"
+            "folder, keep them with start 'build' (--from build), or use --force"
         )
 
 

@@ -116,4 +116,4 @@ def _check(target: Path, is_page: bool, photos: int, force: bool) -> None:
     if target.is_dir():
         raise UsageError(f"{target} is a folder; give a file such as {target / 'room.html'}")
     if os.path.lexists(target) and not force:
-        raise UsageError(f"{target} exists; pass force (--force) to replace it")
+        raise UsageError(f"{target} exists; use --force to replace it")

@@ -193,7 +193,7 @@ def _check_target(source: Path, target: Path, force: bool) -> None:
     if target.exists() and source.samefile(target):
         raise UsageError(f"{target} is both the source and the target; choose another target")
     if not force:
-        raise UsageError(f"{target} exists; pass force (--force) to replace it")
+        raise UsageError(f"{target} exists; use --force to replace it")
     if (target / "level.dat").is_file():
         from world2minecraft.minecraft.worlds.session_lock import session_lock
 
@@ -213,7 +213,7 @@ def _replace_target(written: Path, target: Path, force: bool) -> None:
     for path in beside:
         place = target.parent / path.name
         if place.exists() and not force:
-            raise UsageError(f"{place} exists; pass force (--force) to replace it")
+            raise UsageError(f"{place} exists; use --force to replace it")
     for path in beside:
         _put_in_place(path, target.parent / path.name)
     _put_in_place(written, target)
@@ -259,7 +259,8 @@ class InstalledWorld:
         path: World folder in the saves folder. The folder name is also the name of the world in the
             game.
         game: Name of the game installation, such as ``Prism: Fabric``.
-        note: Warning if the game is too old for the world. Empty otherwise.
+        note: Warnings if the game is too old for the world, or if edits were saved after it was
+            built. Empty otherwise.
         has_player_size: Whether the world's data pack can resize the player (``/function
             w2m:human_size``).
     """
@@ -323,10 +324,14 @@ def install_world(
         reason = "parent folder not found; give the saves folder of a game (--saves DIR)"
         raise InputError(chosen.saves, reason)
     target = installation.install_world(world, chosen.saves, name or None)
+    notes = (
+        installation.edits_note(path_of(source), world),
+        installation.age_note(world, chosen),
+    )
     return InstalledWorld(
         target,
         chosen.name,
-        installation.age_note(world, chosen),
+        "; ".join(filter(None, notes)),
         (target / "datapacks" / "player_size.zip").is_file(),
     )
 

@@ -5,6 +5,7 @@ NYU40, as ``{"classes": "nyu40"}``, which ``w2m segment`` writes, or ids of one'
 names, as ``{"classes": {"1": "wall", "65": "toilet"}}``, which may have 16 bits.
 """
 
+import difflib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +23,9 @@ from world2minecraft.capture.source_types import FrameFiles
 from world2minecraft.core.classes import UNKNOWN
 from world2minecraft.core.errors import CaptureError
 from world2minecraft.core.files import write_json
-from world2minecraft.core.vocabulary import label_id_classes
+from world2minecraft.core.vocabulary import label_id_classes, label_id_of, read_vocabulary
+
+NAMES_TOLD = 5
 
 
 def attach_labels(frames: Sequence[FrameFiles], folder: Path) -> tuple[FrameFiles, ...]:
@@ -65,6 +68,23 @@ def write_label_facts(folder: Path, network: str) -> None:
         OutputError: If the file cannot be written.
     """
     write_json(folder / FACTS_FILE, {"classes": NYU40, "network": network, "unknown": 0})
+
+
+def unknown_names_note(frames: Sequence[FrameFiles]) -> str:
+    """Return a remark on the names of label images that the vocabulary does not have, or ''."""
+    stated = {names for frame in frames if (names := getattr(frame.labels_path, "names", ()))}
+    unknown = {name for names in stated for _, name in names if label_id_of(name) is None}
+    if not unknown:
+        return ""
+    told = []
+    for name in sorted(unknown)[:NAMES_TOLD]:
+        near = difflib.get_close_matches(name.lower(), read_vocabulary().names, n=1)
+        told.append(f"{name} (did you mean {near[0]}?)" if near else name)
+    more = f" and {len(unknown) - NAMES_TOLD} more" if len(unknown) > NAMES_TOLD else ""
+    return (
+        f"{FACTS_FILE} has names that are not known, whose pixels count as unlabelled: "
+        f"{', '.join(told)}{more}"
+    )
 
 
 def check_labels(frames: Sequence[FrameFiles]) -> None:

@@ -32,7 +32,11 @@ from world2minecraft.capture.images import (
     read_header,
     read_raw,
 )
-from world2minecraft.capture.label_images import attach_labels, check_labels
+from world2minecraft.capture.label_images import (
+    attach_labels,
+    check_labels,
+    unknown_names_note,
+)
 from world2minecraft.capture.options import ScanOptions
 from world2minecraft.capture.pose_validation import check_camera_spread, is_lost, repair_pose
 from world2minecraft.capture.source_types import Capture, FrameFiles
@@ -310,6 +314,8 @@ def validate(
                 "the same places (--set capture.every=1 uses all)"
             )
         frames = selected
+    if note := unknown_names_note(frames):
+        notes.append(note)
     if encoding.guessed:
         notes.append(f"depth is read as {encoding.description}, inferred from its values")
     return ValidatedCapture(

@@ -118,7 +118,7 @@ def check_owned(
     does = f"replace {_listed(replaced)} there" if replaced else "write beside them"
     raise UsageError(
         f"{folder} contains other files ({_listed(path.name for path in others)}); choose another "
-        f"folder, or pass force (--force) to {does}"
+        f"folder, or use --force to {does}"
     )
 
 

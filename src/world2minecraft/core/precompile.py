@@ -35,7 +35,7 @@ from world2minecraft.core.progress import Progress, no_progress
 LIST = Path(__file__).parent / "data" / "kernels.json"
 WORK = ("room", "pictures", "photos", "dataset", "navigation")
 STAGE = "compile"
-NOTE = "once for this version"
+NOTE = "once for this kind of work"
 WAIT_S = 0.5  # Between two looks at the lock.
 _this_thread = threading.local()
 

@@ -36,7 +36,7 @@ MORE_ROWS = (
     ("move", "Moves", 1),
     ("relabel", "Class changes", 1),
     ("other", "Other", 1),
-    ("undone", "Undone (not in the total)", 0),
+    ("undone", "Undo steps (not counted)", 0),
 )
 
 

@@ -38,6 +38,13 @@ def test_known_openings_and_placements_are_in_the_table(perfect, capture):
     assert names["collisions"] == "2"
 
 
+def test_objects_are_not_scored_against_a_truth_without_any(perfect, capture):
+    facts = evaluate_reconstruction(perfect, capture)
+    names = dict(score_rows(facts | {"objects": facts["objects"] | {"true": 0}}))
+    assert names["objects"] == "not scored: the ground truth has none in view"
+    assert not [name for name in names if "object F1" in name or name == "  Chair"]
+
+
 def test_another_methods_labels_are_scored_by_the_same_verb(capture, tmp_path, capsys):
     np.savez(tmp_path / "labels.npz", labels=np.zeros((2, 2, 2), np.uint8))
     words = ["evaluate", "reconstruction", str(tmp_path), str(capture)]

@@ -41,6 +41,13 @@ def test_a_damaged_truth_is_named(tmp_path):
         read_truth(tmp_path)
 
 
+def test_a_truth_without_objects_says_what_is_missing(tmp_path):
+    np.savez(tmp_path / "truth.npz", labels=np.zeros((2, 2, 2), np.uint8))
+    (tmp_path / "truth.json").write_text('{"layouts": []}')
+    with pytest.raises(DamagedFileError, match="'objects' is missing; see docs/reference/metrics"):
+        read_truth(tmp_path)
+
+
 @pytest.mark.parametrize("name", ["truth.json", "truth.npz"])
 def test_a_run_says_that_the_truth_is_damaged_before_any_work(name, tmp_path):
     room = write_capture(tmp_path / "capture")

@@ -92,14 +92,17 @@ def score_rows(facts: dict[str, Any]) -> list[tuple[str, str]]:
         walls = f"{100 * frame['walls_x_m']:+.1f} cm, {100 * frame['walls_y_m']:+.1f} cm"
         rows.append(("frame, walls along x and y", walls))
     rows += [(f"poses, {name}", _pose_text(poses)) for name, poses in facts["poses"].items()]
-    rows.append(("object F1 (precision, recall)", _f1_text(objects)))
-    rows += [
-        (
-            f"  {display_name(class_id(name))}",
-            f"{row['matched']} of {row['true']}, {row['found']} found",
-        )
-        for name, row in objects["by_class"].items()
-    ]
+    if objects["true"]:
+        rows.append(("object F1 (precision, recall)", _f1_text(objects)))
+        rows += [
+            (
+                f"  {display_name(class_id(name))}",
+                f"{row['matched']} of {row['true']}, {row['found']} found",
+            )
+            for name, row in objects["by_class"].items()
+        ]
+    else:
+        rows.append(("objects", "not scored: the ground truth has none in view"))
     asked, right = objects["orientation_asked"], objects["orientation_hits"]
     if asked:
         rows.append(("orientation of chairs, sofas and beds correct", f"{right} of {asked}"))

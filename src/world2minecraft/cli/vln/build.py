@@ -169,7 +169,8 @@ def run(
 def _print_summary(out: Path, built: "BuiltSet") -> None:
     walks = sum(len(work.trajectories) for work in built.works)
     refused = sum((sum(work.refused.values()) for work in built.works), 0)
-    print(f"\n{len(built.items):,} items of {walks:,} walks in {len(built.works)} scenes.")
+    scenes = f"{len(built.works)} scene{'s' if len(built.works) != 1 else ''}"
+    print(f"\n{len(built.items):,} items of {walks:,} walks in {scenes}.")
     print(f"  rejected {refused:,} walks that collided or showed too little")
     if built.left_out:
         print(f"  skipped  {len(built.left_out)} scenes outside the composition")

@@ -307,8 +307,9 @@ def headline(facts: dict[str, Any]) -> dict[str, str]:
         "recall within one voxel": f"{surface['recall']:.3f}",
         "IoU": f"{occupancy['iou']:.2f}",
         "mIoU of the classes present": f"{occupancy['miou_present_classes']:.2f}",
-        "object F1": f"{objects['f1']:.2f}",
     }
+    if objects["true"]:
+        shown["object F1"] = f"{objects['f1']:.2f}"
     if objects["orientation_asked"]:
         shown["correct orientation"] = f"{objects['orientation_right']:.2f}"
     return shown

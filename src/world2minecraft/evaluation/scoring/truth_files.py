@@ -115,6 +115,11 @@ def _read(folder: Path) -> Truth:
         objects = tuple(_object(row) for row in stated["objects"])
         layouts = _layouts(stated)
         capture = folder / str(stated.get("capture", ""))
+    except KeyError as error:
+        raise DamagedFileError(
+            folder / "truth.json",
+            f"not a valid ground truth: {error} is missing; see docs/reference/metrics.md",
+        ) from error
     except (*MALFORMED, UnknownNameError) as error:
         raise DamagedFileError(
             folder / "truth.json", f"not a valid ground truth ({error})"

@@ -62,7 +62,7 @@ class AnnotationStore:
         if not force and self.out.exists() and not _is_plain(self.out):
             raise UsageError(
                 f"{self.out} contains other data than annotations; choose another file (--out), or "
-                "pass force (--force) to keep only its instructions"
+                "use --force to keep only its instructions"
             )
 
     def listed(self) -> list[dict[str, Any]]:
