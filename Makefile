@@ -78,7 +78,7 @@ test: $(STAMP)  ## Run the tests, one file per core (TESTS=tests/reconstruction/
 	@$(TEST_ENVIRONMENT) $(BIN)/python -m world2minecraft doctor --warm > /dev/null
 	@$(TEST_ENVIRONMENT) $(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 
-coverage: $(STAMP)  ## Run the tests and report the lines that no test reaches (90 % coverage is required).
+coverage: $(STAMP)  ## Run the tests and report the lines that no test reaches (95 % is required).
 	@rm -f .coverage .coverage.*
 	@$(BIN)/python -m coverage run -m pytest --numprocesses auto --maxprocesses 4 --dist loadfile $(TESTS)
 	@$(BIN)/python -m coverage combine --quiet
