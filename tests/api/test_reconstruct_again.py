@@ -1,5 +1,6 @@
 """What a second ``reconstruct`` into the same folder refuses to lose without ``force``."""
 
+import os
 import shutil
 from contextlib import closing
 from pathlib import Path
@@ -80,3 +81,17 @@ def test_edits_that_were_not_saved_are_no_obstacle(run, example_scan, calls):
     rename_an_object(run, save=False)
     w2m.reconstruct(example_scan, run)
     assert calls == [example_scan]
+
+
+def test_installing_a_world_tells_of_edits_that_are_not_in_it(run, tmp_path):
+    saves = tmp_path / "saves"
+    assert w2m.install_world(run, saves=saves).note == ""
+    rename_an_object(run, save=True)
+    built_s = (run / "build" / "world" / "level.dat").stat().st_mtime
+    os.utime(run / "placements.json", (built_s + 60, built_s + 60))
+    assert w2m.install_world(run, saves=saves).note == (
+        "edits were saved after this world was built and are not in it; "
+        f"w2m build {run} --out EDITED builds them, then w2m install EDITED"
+    )
+    os.utime(run / "placements.json", (built_s - 60, built_s - 60))
+    assert w2m.install_world(run, saves=saves).note == ""

@@ -1,6 +1,7 @@
 """Views of long recordings: those that show what others show are left out."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from hypothesis import given
@@ -55,6 +56,12 @@ def test_short_captures_are_whole():
 def test_a_camera_at_rest_is_used_a_few_times():
     frames = [frame(n, (1, 2, 3), 30) for n in range(LONG + 1)]
     assert select_views(frames) == tuple(frames[:ENOUGH])
+
+
+def test_frames_with_labels_are_not_left_out_for_others():
+    frames = [frame(n, (0, 0, 0), 0) for n in range(LONG + 1)]
+    frames[-1] = replace(frames[-1], labels_path=Path("labels/0100.png"))
+    assert select_views(frames) == (*frames[:ENOUGH], frames[-1])
 
 
 def test_places_and_turns_apart_are_all_used():

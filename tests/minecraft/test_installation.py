@@ -57,24 +57,6 @@ def test_a_taken_name_gets_a_number_in_the_list_too(world, saves):
     assert (saves / "my ROOM" / "level.dat").read_text() == "years of play"
 
 
-def test_edits_after_the_build_are_told(world, tmp_path):
-    run = tmp_path / "run"
-    (run / "build").mkdir(parents=True)
-    built = run / "build" / "world"
-    shutil.move(world, built)
-    assert installing.edits_note(run, built) == ""
-    (run / "placements.json").write_text("{}")
-    moment = (built / "level.dat").stat().st_mtime
-    os.utime(run / "placements.json", (moment, moment))
-    assert installing.edits_note(run, built) == ""
-    os.utime(run / "placements.json", (moment, moment + 60))
-    assert installing.edits_note(run, built) == (
-        "edits were saved after this world was built and are not in it; "
-        f"w2m build {run} --out EDITED builds them, then w2m install EDITED"
-    )
-    assert installing.edits_note(built, built) == ""
-
-
 def test_links_are_not_followed(world, saves, tmp_path):
     (tmp_path / "secret").write_text("mine")
     (world / "icon.png").symlink_to(tmp_path / "secret")

@@ -324,15 +324,27 @@ def install_world(
         reason = "parent folder not found; give the saves folder of a game (--saves DIR)"
         raise InputError(chosen.saves, reason)
     target = installation.install_world(world, chosen.saves, name or None)
-    notes = (
-        installation.edits_note(path_of(source), world),
-        installation.age_note(world, chosen),
-    )
+    notes = (_edits_note(path_of(source), world), installation.age_note(world, chosen))
     return InstalledWorld(
         target,
         chosen.name,
         "; ".join(filter(None, notes)),
         (target / "datapacks" / "player_size.zip").is_file(),
+    )
+
+
+def _edits_note(run: Path, world: Path) -> str:
+    """Return a warning if edits of a run were saved after its world was built, or ''."""
+    from world2minecraft.sceneforge.document.document_metadata import holds_saved_edits
+
+    scene = run / "placements.json"
+    if world == run or not scene.is_file() or not holds_saved_edits(run):
+        return ""
+    if scene.stat().st_mtime <= (world / "level.dat").stat().st_mtime:
+        return ""
+    return (
+        "edits were saved after this world was built and are not in it; "
+        f"w2m build {run} --out EDITED builds them, then w2m install EDITED"
     )
 
 

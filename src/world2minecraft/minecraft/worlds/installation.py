@@ -17,8 +17,6 @@ from world2minecraft.minecraft.worlds.world_reader import LEVEL_LIMITS, read_lev
 
 MAX_FILES = 100_000
 SPARE_BYTES = 16 << 20
-SCENE_FILES = ("room.npz", "placements.json")
-SAME_MOMENT_S = 1.0
 
 
 def install_world(world: Path, saves: Path, name: str | None = None) -> Path:
@@ -121,18 +119,6 @@ def find_world(source: Path) -> Path:
         if (folder / "level.dat").is_file():
             return folder
     raise InputError(source, "contains no world (build/world/level.dat); run w2m build first")
-
-
-def edits_note(run: Path, world: Path) -> str:
-    """Return a warning if the scene of a run was saved after its world was built, or ''."""
-    built_s = (world / "level.dat").stat().st_mtime
-    scene = [path for name in SCENE_FILES if (path := run / name).is_file()]
-    if world == run or not any(path.stat().st_mtime > built_s + SAME_MOMENT_S for path in scene):
-        return ""
-    return (
-        "edits were saved after this world was built and are not in it; "
-        f"w2m build {run} --out EDITED builds them, then w2m install EDITED"
-    )
 
 
 def age_note(world: Path, game: Game) -> str:
